@@ -1,0 +1,57 @@
+#include "simd/face_light.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/face_light.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/light-inl.h"
+#include "simd/material-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
+                             const SurfaceView<Real>& surfaces, std::uint32_t count,
+                             std::uint32_t* faces) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  using V = hn::Vec<Lanes<Real>>;
+  std::uint32_t facing = 0;
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
+      falloff = hn::Zero(d);
+    LoadIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    // False for NaN: a light that lies on the point gives nothing.
+    auto lanes = hn::And(LanesBelow(d, i, count), hn::Gt(n_dot_l, hn::Zero(d)));
+    lanes = hn::And(lanes, HasLocalLight(d, material, surfaces, i));
+    facing += static_cast<std::uint32_t>(hn::CountTrue(d, lanes));
+    const auto one = hn::Set(di, hn::TFromD<decltype(di)>{1});
+    StoreIds(d, hn::IfThenElseZero(hn::RebindMask(di, lanes), one), faces + i);
+  }
+  return facing;
+}
+constexpr auto& FaceLightF32 = FaceLightLanes<float>;
+constexpr auto& FaceLightF64 = FaceLightLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(FaceLightF32);
+HWY_EXPORT(FaceLightF64);
+
+template <typename Real>
+std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& material,
+                        const SurfaceView<Real>& surfaces, std::uint32_t count,
+                        std::uint32_t* faces) {
+  return SHEAF_DISPATCH(Real, FaceLight)(light, material, surfaces, count, faces);
+}
+template decltype(FaceLight<float>) FaceLight<float>;
+template decltype(FaceLight<double>) FaceLight<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

@@ -1,0 +1,18 @@
+// Which surfaces a light could reach.
+#ifndef SHEAF_SIMD_FACE_LIGHT_H_
+#define SHEAF_SIMD_FACE_LIGHT_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+// Writes faces[0, count): 1 where the light lies above the surface (n . l > 0) and the surface
+// shows its own light, else 0. Returns how many do. Reads and writes PaddedCount(count) lanes.
+template <typename Real>
+std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& material,
+                        const SurfaceView<Real>& surfaces, std::uint32_t count,
+                        std::uint32_t* faces);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_FACE_LIGHT_H_

@@ -1,0 +1,70 @@
+#include "simd/generate_primary.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/generate_primary.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx,
+                          Real sy, std::uint32_t count, const RayOutput<Real>& rays) {
+  const Lanes<Real> d;
+  using V = hn::Vec<Lanes<Real>>;
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const V a =
+        hn::Sub(hn::Add(hn::LoadU(d, x + i), hn::Set(d, sx)), hn::Set(d, camera.half_width));
+    const V b =
+        hn::Sub(hn::Set(d, camera.half_height), hn::Add(hn::LoadU(d, y + i), hn::Set(d, sy)));
+    const auto across = [&](int axis) HWY_ATTR {
+      return hn::Add(hn::Mul(hn::Set(d, camera.right[axis]), a),
+                     hn::Mul(hn::Set(d, camera.up[axis]), b));
+    };
+    V ox = hn::Set(d, camera.eye[0]), oy = hn::Set(d, camera.eye[1]),
+      oz = hn::Set(d, camera.eye[2]);
+    V dx = hn::Set(d, camera.forward[0]), dy = hn::Set(d, camera.forward[1]),
+      dz = hn::Set(d, camera.forward[2]);
+    if (camera.orthographic) {
+      ox = hn::Add(ox, across(0));
+      oy = hn::Add(oy, across(1));
+      oz = hn::Add(oz, across(2));
+    } else {
+      dx = hn::Add(dx, across(0));
+      dy = hn::Add(dy, across(1));
+      dz = hn::Add(dz, across(2));
+      Normalize(d, dx, dy, dz);
+    }
+    hn::StoreU(ox, d, rays.origin_x + i);
+    hn::StoreU(oy, d, rays.origin_y + i);
+    hn::StoreU(oz, d, rays.origin_z + i);
+    hn::StoreU(dx, d, rays.direction_x + i);
+    hn::StoreU(dy, d, rays.direction_y + i);
+    hn::StoreU(dz, d, rays.direction_z + i);
+  }
+}
+constexpr auto& GeneratePrimaryF32 = GeneratePrimaryLanes<float>;
+constexpr auto& GeneratePrimaryF64 = GeneratePrimaryLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(GeneratePrimaryF32);
+HWY_EXPORT(GeneratePrimaryF64);
+
+template <typename Real>
+void GeneratePrimary(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx, Real sy,
+                     std::uint32_t count, const RayOutput<Real>& rays) {
+  SHEAF_DISPATCH(Real, GeneratePrimary)(camera, x, y, sx, sy, count, rays);
+}
+template decltype(GeneratePrimary<float>) GeneratePrimary<float>;
+template decltype(GeneratePrimary<double>) GeneratePrimary<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

@@ -1,0 +1,90 @@
+#include "simd/generate_shadow.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/generate_shadow.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/light-inl.h"
+#include "simd/roundoffs.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
+                                  const std::uint32_t* faces, std::uint32_t count,
+                                  const RayOutput<Real>& rays, std::uint32_t* surface_of_ray) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  using V = hn::Vec<Lanes<Real>>;
+  const V light_x = hn::Set(d, light.vector[0]);
+  const V light_y = hn::Set(d, light.vector[1]);
+  const V light_z = hn::Set(d, light.vector[2]);
+  std::uint32_t size = 0;
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const auto wanted = hn::Ne(LoadIds(d, faces + i), hn::Zero(di));
+    const auto lanes = hn::And(LanesBelow(d, i, count), hn::RebindMask(d, wanted));
+    if (hn::AllFalse(d, lanes)) continue;
+    const V px = hn::LoadU(d, surfaces.position_x + i);
+    const V py = hn::LoadU(d, surfaces.position_y + i);
+    const V pz = hn::LoadU(d, surfaces.position_z + i);
+    V away = hn::LoadU(d, surfaces.offset + i);
+    auto source = LoadIds(d, surfaces.source + i);
+    if (light.kind == LightKind::kPointFromLight) {
+      const V distance =
+          hn::Add(hn::Add(hn::Abs(hn::Sub(light_x, px)), hn::Abs(hn::Sub(light_y, py))),
+                  hn::Abs(hn::Sub(light_z, pz)));
+      away = hn::Add(away, hn::Mul(hn::Set(d, kLightRoundoffs<Real>), distance));
+      // From the inside of a sphere the light may have to pass the sphere itself.
+      const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+      const auto inside = hn::Ne(hn::And(source, bit), hn::Zero(di));
+      source = hn::IfThenElse(inside, hn::Set(di, hn::TFromD<decltype(di)>{kNoPrimitive}), source);
+    }
+    // The end of the ray that lies above the surface.
+    const V qx = hn::Add(px, hn::Mul(hn::LoadU(d, surfaces.normal_x + i), away));
+    const V qy = hn::Add(py, hn::Mul(hn::LoadU(d, surfaces.normal_y + i), away));
+    const V qz = hn::Add(pz, hn::Mul(hn::LoadU(d, surfaces.normal_z + i), away));
+    V ox = qx, oy = qy, oz = qz, dx = light_x, dy = light_y, dz = light_z;
+    if (light.kind == LightKind::kPointFromLight) {
+      ox = light_x, oy = light_y, oz = light_z;
+      dx = hn::Sub(qx, light_x), dy = hn::Sub(qy, light_y), dz = hn::Sub(qz, light_z);
+    } else if (light.kind == LightKind::kPointFromSurface) {
+      dx = hn::Sub(light_x, qx), dy = hn::Sub(light_y, qy), dz = hn::Sub(light_z, qz);
+    }
+    CompressStoreAt(d, ox, lanes, rays.origin_x + size);
+    CompressStoreAt(d, oy, lanes, rays.origin_y + size);
+    CompressStoreAt(d, oz, lanes, rays.origin_z + size);
+    CompressStoreAt(d, dx, lanes, rays.direction_x + size);
+    CompressStoreAt(d, dy, lanes, rays.direction_y + size);
+    CompressStoreAt(d, dz, lanes, rays.direction_z + size);
+    CompressStoreIdsAt(d, source, lanes, rays.source + size);
+    CompressStoreIdsAt(d, hn::Iota(di, static_cast<hn::TFromD<decltype(di)>>(i)), lanes,
+                       surface_of_ray + size);
+    size += static_cast<std::uint32_t>(hn::CountTrue(d, lanes));
+  }
+  return size;
+}
+constexpr auto& GenerateShadowF32 = GenerateShadowLanes<float>;
+constexpr auto& GenerateShadowF64 = GenerateShadowLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(GenerateShadowF32);
+HWY_EXPORT(GenerateShadowF64);
+
+template <typename Real>
+std::uint32_t GenerateShadow(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
+                             const std::uint32_t* faces, std::uint32_t count,
+                             const RayOutput<Real>& rays, std::uint32_t* surface_of_ray) {
+  return SHEAF_DISPATCH(Real, GenerateShadow)(light, surfaces, faces, count, rays, surface_of_ray);
+}
+template decltype(GenerateShadow<float>) GenerateShadow<float>;
+template decltype(GenerateShadow<double>) GenerateShadow<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

@@ -1,0 +1,240 @@
+// Plain views of everything a kernel reads or writes: streams, geometry, materials, lights, camera.
+//
+// Layout: structure of arrays, one pointer a field, 64-byte aligned.
+// Padding: a stream of `n` elements owns StreamCapacity(n) of each field. Kernels load and store
+// whole
+//   vectors: lanes past the count may hold anything on entry and anything on return.
+// Aliasing: the fields of a view never overlap, and no output overlaps an input.
+// NaN: allowed everywhere in rays; such a ray misses (src/scalar/ray.h).
+// `Real` is float or double; identifiers are 32 bit in both.
+#ifndef SHEAF_SIMD_LAYOUT_H_
+#define SHEAF_SIMD_LAYOUT_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace sheaf {
+
+inline constexpr std::size_t kAlignment = 64;
+// Kernels use at most this many lanes, whatever the target offers.
+inline constexpr std::uint32_t kMaxLanes = 16;
+
+constexpr std::uint32_t PaddedCount(std::uint32_t n) {
+  return (n + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+}
+// One vector more than padded, because compaction stores a whole vector at any offset below n.
+constexpr std::uint32_t StreamCapacity(std::uint32_t n) { return PaddedCount(n) + kMaxLanes; }
+
+// Primitive ids are positions in the input order, below kNoPrimitive.
+inline constexpr std::uint32_t kNoPrimitive = 0x7fffffffu;
+// A ray's `source` is the primitive it starts on. A triangle or a sphere that is the source is
+// never hit, unless this bit says that the ray runs inside the sphere: then its far root alone
+// counts.
+inline constexpr std::uint32_t kInsideBit = 0x80000000u;
+
+// A hit at t counts where t_min <= t <= t_max and t is finite. By default t_min is the smallest
+// positive number, so that a hit at exactly 0 does not count, and t_max the largest finite one.
+template <typename Real>
+inline constexpr Real kDefaultTMin = std::numeric_limits<Real>::denorm_min();
+template <typename Real>
+inline constexpr Real kDefaultTMax = std::numeric_limits<Real>::max();
+
+// The intervals of a batch of rays: an array where each ray has its own, else one value for all.
+template <typename Real>
+struct RayIntervals {
+  const Real* t_min = nullptr;
+  const Real* t_max = nullptr;
+  Real all_t_min = kDefaultTMin<Real>;
+  Real all_t_max = kDefaultTMax<Real>;
+};
+
+// ---- Streams
+// ------------------------------------------------------------------------------------- A stream is
+// declared once, over what a field is: an owning array, a pointer or a const pointer.
+
+template <typename T>
+using MutableField = T*;
+template <typename T>
+using ConstField = const T*;
+
+// What TraceClosest and TraceOccluded read of a ray.
+template <typename Real, template <typename> class Field>
+struct RayFields {
+  Field<Real> origin_x, origin_y, origin_z;
+  Field<Real> direction_x, direction_y, direction_z;  // any length
+  Field<std::uint32_t> source;  // kNoPrimitive: none; a null pointer: none for all
+
+  static constexpr auto kFields = std::make_tuple(
+      &RayFields::origin_x, &RayFields::origin_y, &RayFields::origin_z, &RayFields::direction_x,
+      &RayFields::direction_y, &RayFields::direction_z, &RayFields::source);
+};
+
+// What the schedule keeps of a ray besides: where its light goes, and how much of it.
+template <typename Real, template <typename> class Field>
+struct PathFields {
+  Field<std::uint32_t> pixel;                // index into the tile
+  Field<std::uint32_t> parent;               // position in the stream that spawned it
+  Field<Real> weight_r, weight_g, weight_b;  // throughput since the eye
+
+  static constexpr auto kFields =
+      std::make_tuple(&PathFields::pixel, &PathFields::parent, &PathFields::weight_r,
+                      &PathFields::weight_g, &PathFields::weight_b);
+};
+
+// What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
+// are 0) and parameters of the hit. Triangle: barycentric weights of the second and third vertex.
+// Sphere: u is 0 where the ray enters and 1 where it leaves, v is 0.
+template <typename Real, template <typename> class Field>
+struct HitFields {
+  Field<Real> t, u, v;
+  Field<std::uint32_t> primitive;
+
+  static constexpr auto kFields =
+      std::make_tuple(&HitFields::t, &HitFields::u, &HitFields::v, &HitFields::primitive);
+};
+
+// A point to be shaded.
+template <typename Real, template <typename> class Field>
+struct SurfaceFields {
+  Field<Real> position_x, position_y, position_z;
+  Field<Real> normal_x, normal_y, normal_z;           // unit, facing the ray
+  Field<Real> direction_x, direction_y, direction_z;  // of the ray, unit
+  Field<Real> u, v;                                   // surface coordinates, 0 on spheres
+  Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
+  Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
+  Field<std::uint32_t> ray;     // position in the ray stream
+
+  static constexpr auto kFields = std::make_tuple(
+      &SurfaceFields::position_x, &SurfaceFields::position_y, &SurfaceFields::position_z,
+      &SurfaceFields::normal_x, &SurfaceFields::normal_y, &SurfaceFields::normal_z,
+      &SurfaceFields::direction_x, &SurfaceFields::direction_y, &SurfaceFields::direction_z,
+      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::offset, &SurfaceFields::source,
+      &SurfaceFields::ray);
+};
+
+// Linear RGB, one an element.
+template <typename Real, template <typename> class Field>
+struct ColourFields {
+  Field<Real> r, g, b;
+
+  static constexpr auto kFields =
+      std::make_tuple(&ColourFields::r, &ColourFields::g, &ColourFields::b);
+};
+
+template <typename Real>
+using RayView = RayFields<Real, ConstField>;
+template <typename Real>
+using RayOutput = RayFields<Real, MutableField>;
+template <typename Real>
+using PathView = PathFields<Real, ConstField>;
+template <typename Real>
+using PathOutput = PathFields<Real, MutableField>;
+template <typename Real>
+using HitView = HitFields<Real, ConstField>;
+template <typename Real>
+using HitOutput = HitFields<Real, MutableField>;
+template <typename Real>
+using SurfaceView = SurfaceFields<Real, ConstField>;
+template <typename Real>
+using SurfaceOutput = SurfaceFields<Real, MutableField>;
+template <typename Real>
+using ColourView = ColourFields<Real, ConstField>;
+template <typename Real>
+using ColourOutput = ColourFields<Real, MutableField>;
+
+// Calls f(field of a, field of b) for the fields of two instances of one stream, in order.
+template <typename A, typename B, typename F>
+constexpr void ForEachField(A& a, B& b, F f) {
+  constexpr std::size_t kCount = std::tuple_size_v<decltype(A::kFields)>;
+  [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+    (f(a.*std::get<kIndex>(A::kFields), b.*std::get<kIndex>(B::kFields)), ...);
+  }
+  (std::make_index_sequence<kCount>());
+}
+template <typename A, typename F>
+constexpr void ForEachField(A& a, F f) {
+  std::apply([&](auto... member) { (f(a.*member), ...); }, A::kFields);
+}
+
+// A list of hits that are treated alike: positions in the ray stream, and what each ray hit there.
+struct HitBatch {
+  const std::uint32_t* ray;
+  const std::uint32_t* local;      // index into the spheres, or into the triangles
+  const std::uint32_t* primitive;  // id
+  std::uint32_t count;
+};
+
+// ---- Geometry
+// ------------------------------------------------------------------------------------
+
+template <typename Real>
+struct SphereArrays {
+  std::uint32_t count;
+  const Real *center_x, *center_y, *center_z;
+  const Real* radius;  // NaN: never hit (stands for radius 0)
+  const std::uint32_t* id;
+};
+
+template <typename Real>
+struct TriangleArrays {
+  std::uint32_t count;
+  const Real* vertex[3][3];  // [vertex][axis]; NaN: never hit (stands for zero area)
+  const Real* uv[3][2];      // [vertex][u or v]
+  const std::uint32_t* id;
+};
+
+// Spheres and triangles share one range of ids.
+template <typename Real>
+struct GeometryView {
+  SphereArrays<Real> spheres;
+  TriangleArrays<Real> triangles;
+};
+
+// ---- What a frame is shaded with
+// ------------------------------------------------------------------
+
+enum class BaseColour : std::uint32_t { kConstant, kChecker };
+
+template <typename Real>
+struct MaterialData {
+  BaseColour kind;
+  Real even[3], odd[3];  // linear RGB; `odd` of a checker alone
+  Real cells[2];         // checker cells across the unit interval of u and of v
+  Real ambient[3];       // ka times the ambient light
+  Real kd, ks, shininess;
+  Real reflect[3], transmit[3];
+  Real ior;
+};
+
+enum class LightKind : std::uint32_t {
+  kPointFromLight,    // shadow rays run from the light to the surface, so that a batch shares an
+                      // origin
+  kPointFromSurface,  // a light so far away that rounding there would reach the surface
+  kDirectional,
+};
+
+template <typename Real>
+struct LightData {
+  LightKind kind;
+  Real vector[3];   // position, or the unit vector toward a directional light
+  Real rgb[3];      // colour * intensity * exposure
+  Real falloff[3];  // kc, kl, kq; 1, 0, 0 for directional lights
+  std::uint32_t casts_shadows;
+};
+
+// Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
+// and b = half_height - (y + sy) steps up.
+template <typename Real>
+struct CameraData {
+  std::uint32_t orthographic;
+  Real eye[3], forward[3];       // forward is a unit vector
+  Real right[3], up[3];          // a pixel's step on the plane one unit ahead, or in scene units
+  Real half_width, half_height;  // pixels
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SIMD_LAYOUT_H_

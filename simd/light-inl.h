@@ -1,0 +1,43 @@
+// A light as surfaces see it.
+#if defined(SHEAF_SIMD_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_LIGHT_INL_H_
+#undef SHEAF_SIMD_LIGHT_INL_H_
+#else
+#define SHEAF_SIMD_LIGHT_INL_H_
+#endif
+
+#include "simd/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+// The unit vector to the light, its cosine with the normal (NaN where the light lies on the point)
+// and the denominator of its falloff: IncidenceOf in src/scalar/shade.h.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceView<Real>& surfaces,
+                              std::uint32_t i, V& lx, V& ly, V& lz, V& n_dot_l, V& falloff) {
+  lx = hn::Set(d, light.vector[0]);
+  ly = hn::Set(d, light.vector[1]);
+  lz = hn::Set(d, light.vector[2]);
+  V squared = hn::Zero(d), distance = hn::Zero(d);
+  if (light.kind != LightKind::kDirectional) {
+    lx = hn::Sub(lx, hn::LoadU(d, surfaces.position_x + i));
+    ly = hn::Sub(ly, hn::LoadU(d, surfaces.position_y + i));
+    lz = hn::Sub(lz, hn::LoadU(d, surfaces.position_z + i));
+    squared = Dot(d, lx, ly, lz, lx, ly, lz);
+    distance = hn::Sqrt(squared);
+    lx = hn::Div(lx, distance);
+    ly = hn::Div(ly, distance);
+    lz = hn::Div(lz, distance);
+  }
+  n_dot_l = Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
+                hn::LoadU(d, surfaces.normal_z + i), lx, ly, lz);
+  falloff = hn::Add(
+      hn::Add(hn::Set(d, light.falloff[0]), hn::Mul(hn::Set(d, light.falloff[1]), distance)),
+      hn::Mul(hn::Set(d, light.falloff[2]), squared));
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_LIGHT_INL_H_

@@ -1,0 +1,51 @@
+// What a batch of one material needs to know of it: src/scalar/shade.h.
+#if defined(SHEAF_SIMD_MATERIAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_MATERIAL_INL_H_
+#undef SHEAF_SIMD_MATERIAL_INL_H_
+#else
+#define SHEAF_SIMD_MATERIAL_INL_H_
+#endif
+
+#include "simd/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+HWY_INLINE bool Transmits(const MaterialData<Real>& material) {
+  return material.transmit[0] > 0 || material.transmit[1] > 0 || material.transmit[2] > 0;
+}
+
+// A transparent body has no light of its own inside.
+template <class D, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Mask<D> HasLocalLight(D d, const MaterialData<Real>& material,
+                                     const SurfaceView<Real>& surfaces, std::uint32_t i) {
+  const IdLanes<D> di;
+  if (!Transmits(material)) return hn::Eq(hn::Zero(d), hn::Zero(d));
+  const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+  return hn::RebindMask(d, hn::Eq(hn::And(LoadIds(d, surfaces.source + i), bit), hn::Zero(di)));
+}
+
+// A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
+                               const SurfaceView<Real>& surfaces, std::uint32_t i, V& r, V& g,
+                               V& b) {
+  r = hn::Set(d, material.even[0]);
+  g = hn::Set(d, material.even[1]);
+  b = hn::Set(d, material.even[2]);
+  if (material.kind == BaseColour::kConstant) return;
+  const V u = hn::Mul(hn::LoadU(d, surfaces.u + i), hn::Set(d, material.cells[0]));
+  const V v = hn::Mul(hn::LoadU(d, surfaces.v + i), hn::Set(d, material.cells[1]));
+  const V cell = hn::Add(hn::Floor(u), hn::Floor(v));
+  const V half = hn::Floor(hn::Mul(cell, hn::Set(d, Real(0.5))));
+  const auto odd = hn::Ne(cell, hn::Add(half, half));
+  r = hn::IfThenElse(odd, hn::Set(d, material.odd[0]), r);
+  g = hn::IfThenElse(odd, hn::Set(d, material.odd[1]), g);
+  b = hn::IfThenElse(odd, hn::Set(d, material.odd[2]), b);
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_MATERIAL_INL_H_

@@ -1,0 +1,121 @@
+// Lane types and three-vectors that every kernel shares.
+//
+// x, y and z are separate vectors, because a struct cannot hold a vector of unknown size (SVE).
+// Sums associate as in src/scalar/vec3.h; Mul and Add are never fused (-ffp-contract=off).
+#if defined(SHEAF_SIMD_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_MATH_INL_H_
+#undef SHEAF_SIMD_MATH_INL_H_
+#else
+#define SHEAF_SIMD_MATH_INL_H_
+#endif
+
+#include <cstdint>
+#include <type_traits>
+
+#include "hwy/highway.h"
+#include "simd/layout.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename Real>
+using Lanes = hn::CappedTag<Real, kMaxLanes>;
+
+// What float cannot hold exactly enough is computed in double, half a vector at a time. `WideLanes`
+// has those lanes and `NarrowLanes` as many of Real; for double both are the whole vector.
+template <typename Real>
+using WideLanes = std::conditional_t<std::is_same_v<Real, float>,
+                                     hn::CappedTag<double, kMaxLanes / 2>, Lanes<double>>;
+template <typename Real>
+using NarrowLanes = hn::Rebind<Real, WideLanes<Real>>;
+
+HWY_INLINE hn::Vec<WideLanes<float>> Widen(hn::Vec<NarrowLanes<float>> v) {
+  return hn::PromoteTo(WideLanes<float>(), v);
+}
+HWY_INLINE hn::Vec<WideLanes<double>> Widen(hn::Vec<WideLanes<double>> v) { return v; }
+
+template <typename Real, class V>
+HWY_INLINE hn::Vec<NarrowLanes<Real>> Narrow(V v) {
+  if constexpr (std::is_same_v<Real, float>) {
+    return hn::DemoteTo(NarrowLanes<float>(), v);
+  } else {
+    return v;
+  }
+}
+
+template <class D>
+HWY_INLINE std::uint32_t LaneCount(D d) {
+  return static_cast<std::uint32_t>(hn::Lanes(d));
+}
+
+// Identifiers are 32 bit in memory and as wide as the lanes in registers.
+template <class D>
+using IdLanes = hn::RebindToUnsigned<D>;
+
+template <class D>
+HWY_INLINE hn::Vec<IdLanes<D>> LoadIds(D /*d*/, const std::uint32_t* ids) {
+  if constexpr (sizeof(hn::TFromD<D>) == 4) {
+    return hn::LoadU(IdLanes<D>(), ids);
+  } else {
+    return hn::PromoteTo(IdLanes<D>(), hn::LoadU(hn::Rebind<std::uint32_t, D>(), ids));
+  }
+}
+
+template <class D, class V>
+HWY_INLINE void StoreIds(D /*d*/, V v, std::uint32_t* ids) {
+  if constexpr (sizeof(hn::TFromD<D>) == 4) {
+    hn::StoreU(v, IdLanes<D>(), ids);
+  } else {
+    const hn::Rebind<std::uint32_t, D> d32;
+    hn::StoreU(hn::TruncateTo(d32, v), d32, ids);
+  }
+}
+
+// array[ids[lane]] for a whole vector of ids.
+template <class D, class V>
+HWY_INLINE hn::Vec<D> GatherAt(D d, const hn::TFromD<D>* HWY_RESTRICT array, V ids) {
+  return hn::GatherIndex(d, array, hn::BitCast(hn::RebindToSigned<D>(), ids));
+}
+
+// Stores the lanes of `kept` without gaps, and rubbish up to a whole vector. Compress and StoreU,
+// because CompressStore costs tens of nanoseconds on some processors (Zen 4).
+template <class D, class M>
+HWY_INLINE void CompressStoreAt(D d, hn::Vec<D> v, M kept, hn::TFromD<D>* to) {
+  hn::StoreU(hn::Compress(v, kept), d, to);
+}
+template <class D, class M>
+HWY_INLINE void CompressStoreIdsAt(D d, hn::Vec<IdLanes<D>> v, M kept, std::uint32_t* to) {
+  StoreIds(d, hn::Compress(v, hn::RebindMask(IdLanes<D>(), kept)), to);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V Dot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
+  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+}
+
+// |ax bx| + |ay by| + |az bz|
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V AbsDot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
+  return hn::Add(hn::Add(hn::Abs(hn::Mul(ax, bx)), hn::Abs(hn::Mul(ay, by))),
+                 hn::Abs(hn::Mul(az, bz)));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void Normalize(D d, V& x, V& y, V& z) {
+  const V length = hn::Sqrt(Dot(d, x, y, z, x, y, z));
+  x = hn::Div(x, length);
+  y = hn::Div(y, length);
+  z = hn::Div(z, length);
+}
+
+// Lanes of a batch of `count` that the vector at `i` covers.
+template <class D>
+HWY_INLINE hn::Mask<D> LanesBelow(D d, std::uint32_t i, std::uint32_t count) {
+  return hn::FirstN(d, count - i);
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_MATH_INL_H_

@@ -1,0 +1,51 @@
+#include "simd/shade_ambient.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/shade_ambient.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/material-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+void ShadeAmbientLanes(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                       std::uint32_t count, const ColourOutput<Real>& colours) {
+  const Lanes<Real> d;
+  using V = hn::Vec<Lanes<Real>>;
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const auto local = HasLocalLight(d, material, surfaces, i);
+    V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
+    LoadBaseColour(d, material, surfaces, i, r, g, b);
+    const auto ambient = [&](int channel, V base) HWY_ATTR {
+      return hn::IfThenElseZero(local, hn::Mul(hn::Set(d, material.ambient[channel]), base));
+    };
+    hn::StoreU(ambient(0, r), d, colours.r + i);
+    hn::StoreU(ambient(1, g), d, colours.g + i);
+    hn::StoreU(ambient(2, b), d, colours.b + i);
+  }
+}
+constexpr auto& ShadeAmbientF32 = ShadeAmbientLanes<float>;
+constexpr auto& ShadeAmbientF64 = ShadeAmbientLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(ShadeAmbientF32);
+HWY_EXPORT(ShadeAmbientF64);
+
+template <typename Real>
+void ShadeAmbient(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                  std::uint32_t count, const ColourOutput<Real>& colours) {
+  SHEAF_DISPATCH(Real, ShadeAmbient)(material, surfaces, count, colours);
+}
+template decltype(ShadeAmbient<float>) ShadeAmbient<float>;
+template decltype(ShadeAmbient<double>) ShadeAmbient<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

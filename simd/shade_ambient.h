@@ -1,0 +1,17 @@
+// The light that surfaces send without any light source.
+#ifndef SHEAF_SIMD_SHADE_AMBIENT_H_
+#define SHEAF_SIMD_SHADE_AMBIENT_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+// Writes colours[0, count): the ambient term, and 0 inside a transparent body. Bits: as
+// sheaf::scalar::LocalLight without lights. Reads and writes PaddedCount(count) lanes.
+template <typename Real>
+void ShadeAmbient(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                  std::uint32_t count, const ColourOutput<Real>& colours);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_SHADE_AMBIENT_H_

@@ -1,0 +1,80 @@
+#include "simd/shade_light.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/shade_light.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/light-inl.h"
+#include "simd/material-inl.h"
+#include "simd/pow-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
+                     const SurfaceView<Real>& surfaces, const std::uint32_t* lit,
+                     std::uint32_t count, const ColourOutput<Real>& colours) {
+  const Lanes<Real> d;
+  using V = hn::Vec<Lanes<Real>>;
+  const V one = hn::Set(d, Real(1));
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const auto wanted = hn::Ne(LoadIds(d, lit + i), hn::Zero(IdLanes<Lanes<Real>>()));
+    const auto lanes = hn::And(LanesBelow(d, i, count), hn::RebindMask(d, wanted));
+    if (hn::AllFalse(d, lanes)) continue;
+    V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
+      falloff = hn::Zero(d);
+    LoadIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    const V attenuation = hn::Div(one, falloff);
+    const V diffuse = hn::Mul(hn::Set(d, material.kd), n_dot_l);
+    V highlight = hn::Zero(d);
+    if (material.ks > 0) {
+      V hx = hn::Sub(lx, hn::LoadU(d, surfaces.direction_x + i));
+      V hy = hn::Sub(ly, hn::LoadU(d, surfaces.direction_y + i));
+      V hz = hn::Sub(lz, hn::LoadU(d, surfaces.direction_z + i));
+      Normalize(d, hx, hy, hz);
+      const V n_dot_h =
+          Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
+              hn::LoadU(d, surfaces.normal_z + i), hx, hy, hz);
+      // Rounding can carry it past 1; NaN, from an h of length 0, counts as 0.
+      const V below_one = hn::IfThenElse(hn::Lt(n_dot_h, one), n_dot_h, one);
+      const V clamped = hn::IfThenElseZero(hn::Gt(n_dot_h, hn::Zero(d)), below_one);
+      highlight = hn::Mul(hn::Set(d, material.ks), Pow(d, clamped, material.shininess));
+    }
+    V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
+    LoadBaseColour(d, material, surfaces, i, r, g, b);
+    const auto add = [&](int channel, V base, Real* HWY_RESTRICT sum) HWY_ATTR {
+      const V light_here = hn::Mul(hn::Set(d, light.rgb[channel]), attenuation);
+      const V added = hn::Mul(light_here, hn::Add(hn::Mul(base, diffuse), highlight));
+      const V before = hn::LoadU(d, sum + i);
+      hn::StoreU(hn::IfThenElse(lanes, hn::Add(before, added), before), d, sum + i);
+    };
+    add(0, r, colours.r);
+    add(1, g, colours.g);
+    add(2, b, colours.b);
+  }
+}
+constexpr auto& ShadeLightF32 = ShadeLightLanes<float>;
+constexpr auto& ShadeLightF64 = ShadeLightLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(ShadeLightF32);
+HWY_EXPORT(ShadeLightF64);
+
+template <typename Real>
+void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material,
+                const SurfaceView<Real>& surfaces, const std::uint32_t* lit, std::uint32_t count,
+                const ColourOutput<Real>& colours) {
+  SHEAF_DISPATCH(Real, ShadeLight)(light, material, surfaces, lit, count, colours);
+}
+template decltype(ShadeLight<float>) ShadeLight<float>;
+template decltype(ShadeLight<double>) ShadeLight<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

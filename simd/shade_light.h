@@ -1,0 +1,18 @@
+// What one light adds to the surfaces that it reaches.
+#ifndef SHEAF_SIMD_SHADE_LIGHT_H_
+#define SHEAF_SIMD_SHADE_LIGHT_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+// Adds to colours[0, count) where lit != 0. Bits: as sheaf::scalar::LitBy. Reads and writes
+// PaddedCount(count) lanes.
+template <typename Real>
+void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material,
+                const SurfaceView<Real>& surfaces, const std::uint32_t* lit, std::uint32_t count,
+                const ColourOutput<Real>& colours);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_SHADE_LIGHT_H_

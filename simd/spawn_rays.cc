@@ -1,0 +1,154 @@
+#include "simd/spawn_rays.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/spawn_rays.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/material-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+// src/scalar/spawn.h: how an interface splits light; `is_total` where all of it is reflected.
+template <class D, class M, class V = hn::Vec<D>>
+HWY_INLINE void FresnelSplit(D d, V eta, V cos_i, V& reflectance, V& cos_t, M& is_total) {
+  using Real = hn::TFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  const V sin2 = hn::Mul(hn::Mul(eta, eta), hn::Sub(one, hn::Mul(cos_i, cos_i)));
+  const V k = hn::Sub(one, sin2);
+  const auto matched = hn::Eq(eta, one);
+  is_total = hn::AndNot(matched, hn::Not(hn::Gt(k, zero)));
+  cos_t = hn::IfThenZeroElse(is_total, hn::Sqrt(k));
+  const V eta_i = hn::Mul(eta, cos_i), eta_t = hn::Mul(eta, cos_t);
+  const V s = hn::Div(hn::Sub(eta_i, cos_t), hn::Add(eta_i, cos_t));
+  const V p = hn::Div(hn::Sub(cos_i, eta_t), hn::Add(cos_i, eta_t));
+  reflectance = hn::Div(hn::Add(hn::Mul(s, s), hn::Mul(p, p)), hn::Set(d, Real(2)));
+  reflectance = hn::IfThenElse(is_total, one, hn::IfThenZeroElse(matched, reflectance));
+  // Matched indices let everything through unbent, without the rounding of the square root.
+  cos_t = hn::IfThenElse(matched, cos_i, cos_t);
+}
+
+template <typename Real>
+SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                           std::uint32_t count, const PathView<Real>& parents,
+                           const RayOutput<Real>& reflected_rays,
+                           const PathOutput<Real>& reflected_paths,
+                           const RayOutput<Real>& refracted_rays,
+                           const PathOutput<Real>& refracted_paths) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  using V = hn::Vec<Lanes<Real>>;
+  using VI = hn::Vec<IdLanes<Lanes<Real>>>;
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  const VI bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+  SpawnCounts size{0, 0};
+  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const auto lanes = LanesBelow(d, i, count);
+    const V nx = hn::LoadU(d, surfaces.normal_x + i);
+    const V ny = hn::LoadU(d, surfaces.normal_y + i);
+    const V nz = hn::LoadU(d, surfaces.normal_z + i);
+    const V dx = hn::LoadU(d, surfaces.direction_x + i);
+    const V dy = hn::LoadU(d, surfaces.direction_y + i);
+    const V dz = hn::LoadU(d, surfaces.direction_z + i);
+    const V offset = hn::LoadU(d, surfaces.offset + i);
+    const V away_x = hn::Mul(nx, offset), away_y = hn::Mul(ny, offset),
+            away_z = hn::Mul(nz, offset);
+    const V px = hn::LoadU(d, surfaces.position_x + i);
+    const V py = hn::LoadU(d, surfaces.position_y + i);
+    const V pz = hn::LoadU(d, surfaces.position_z + i);
+    const VI source = LoadIds(d, surfaces.source + i);
+    const VI parent = LoadIds(d, surfaces.ray + i);
+    const VI safe_parent = hn::IfThenElseZero(hn::RebindMask(di, lanes), parent);
+    const auto weight = [&](const Real* HWY_RESTRICT weights)
+                            HWY_ATTR { return weights ? GatherAt(d, weights, safe_parent) : one; };
+    const V weight_r = weight(parents.weight_r);
+    const V weight_g = weight(parents.weight_g);
+    const V weight_b = weight(parents.weight_b);
+
+    const V towards = hn::Neg(Dot(d, nx, ny, nz, dx, dy, dz));
+    const V cos_i = hn::IfThenElseZero(hn::Gt(towards, zero), towards);
+    V reflectance = zero, cos_t = zero, eta = one;
+    auto is_total = hn::Eq(zero, zero);
+    if (Transmits(material)) {
+      const V ior = hn::Set(d, material.ior);
+      const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));
+      eta = hn::IfThenElse(inside, ior, hn::Div(one, ior));
+      FresnelSplit(d, eta, cos_i, reflectance, cos_t, is_total);
+    }
+
+    // A child whose weight is 0 is not traced.
+    const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, VI from,
+                            const RayOutput<Real>& rays, const PathOutput<Real>& paths,
+                            std::uint32_t& at) HWY_ATTR {
+      const auto positive = hn::Or(hn::Or(hn::Gt(wr, zero), hn::Gt(wg, zero)), hn::Gt(wb, zero));
+      const auto kept = hn::And(lanes, positive);
+      if (hn::AllFalse(d, kept)) return;
+      Normalize(d, x, y, z);
+      CompressStoreAt(d, ox, kept, rays.origin_x + at);
+      CompressStoreAt(d, oy, kept, rays.origin_y + at);
+      CompressStoreAt(d, oz, kept, rays.origin_z + at);
+      CompressStoreAt(d, x, kept, rays.direction_x + at);
+      CompressStoreAt(d, y, kept, rays.direction_y + at);
+      CompressStoreAt(d, z, kept, rays.direction_z + at);
+      CompressStoreIdsAt(d, from, kept, rays.source + at);
+      CompressStoreIdsAt(d, parent, kept, paths.parent + at);
+      CompressStoreAt(d, wr, kept, paths.weight_r + at);
+      CompressStoreAt(d, wg, kept, paths.weight_g + at);
+      CompressStoreAt(d, wb, kept, paths.weight_b + at);
+      at += static_cast<std::uint32_t>(hn::CountTrue(d, kept));
+    };
+
+    const auto reflected_weight = [&](V parent_weight, int channel) HWY_ATTR {
+      const V transmit = hn::Mul(hn::Set(d, material.transmit[channel]), reflectance);
+      return hn::Mul(parent_weight, hn::Add(hn::Set(d, material.reflect[channel]), transmit));
+    };
+    const V twice = hn::Mul(hn::Set(d, Real(2)), cos_i);
+    append(reflected_weight(weight_r, 0), reflected_weight(weight_g, 1),
+           reflected_weight(weight_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
+           hn::Add(pz, away_z), hn::Add(dx, hn::Mul(nx, twice)), hn::Add(dy, hn::Mul(ny, twice)),
+           hn::Add(dz, hn::Mul(nz, twice)), source, reflected_rays, reflected_paths,
+           size.reflected);
+
+    if (hn::AllTrue(d, is_total)) continue;
+    const auto refracted_weight = [&](V parent_weight, int channel) HWY_ATTR {
+      const V share = hn::Mul(hn::Set(d, material.transmit[channel]), hn::Sub(one, reflectance));
+      return hn::IfThenZeroElse(is_total, hn::Mul(parent_weight, share));
+    };
+    const V bend = hn::Sub(hn::Mul(eta, cos_i), cos_t);
+    append(refracted_weight(weight_r, 0), refracted_weight(weight_g, 1),
+           refracted_weight(weight_b, 2), hn::Sub(px, away_x), hn::Sub(py, away_y),
+           hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(nx, bend)),
+           hn::Add(hn::Mul(dy, eta), hn::Mul(ny, bend)),
+           hn::Add(hn::Mul(dz, eta), hn::Mul(nz, bend)), hn::Xor(source, bit), refracted_rays,
+           refracted_paths, size.refracted);
+  }
+  return size;
+}
+constexpr auto& SpawnRaysF32 = SpawnRaysLanes<float>;
+constexpr auto& SpawnRaysF64 = SpawnRaysLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(SpawnRaysF32);
+HWY_EXPORT(SpawnRaysF64);
+
+template <typename Real>
+SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                      std::uint32_t count, const PathView<Real>& parents,
+                      const RayOutput<Real>& reflected_rays,
+                      const PathOutput<Real>& reflected_paths,
+                      const RayOutput<Real>& refracted_rays,
+                      const PathOutput<Real>& refracted_paths) {
+  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, reflected_rays,
+                                         reflected_paths, refracted_rays, refracted_paths);
+}
+template decltype(SpawnRays<float>) SpawnRays<float>;
+template decltype(SpawnRays<double>) SpawnRays<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

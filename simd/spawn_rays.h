@@ -1,0 +1,28 @@
+// The rays that surfaces send on: reflection and refraction.
+#ifndef SHEAF_SIMD_SPAWN_RAYS_H_
+#define SHEAF_SIMD_SPAWN_RAYS_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+struct SpawnCounts {
+  std::uint32_t reflected, refracted;
+};
+
+// Appends the children of surfaces[0, count), in order and without gaps, from position 0 of each
+// output: rays, the position of the parent in its stream (`paths.parent`) and the weight; leaves
+// paths.pixel alone. `parents` gives the weights of the ray stream; null pointers there stand
+// for 1. Bits: as sheaf::scalar::Spawn. Reads PaddedCount(count) lanes; writes
+// StreamCapacity(count) at most.
+template <typename Real>
+SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                      std::uint32_t count, const PathView<Real>& parents,
+                      const RayOutput<Real>& reflected_rays,
+                      const PathOutput<Real>& reflected_paths,
+                      const RayOutput<Real>& refracted_rays,
+                      const PathOutput<Real>& refracted_paths);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_SPAWN_RAYS_H_

@@ -1,0 +1,18 @@
+// The surface points of rays that hit spheres.
+#ifndef SHEAF_SIMD_SPHERE_SURFACE_H_
+#define SHEAF_SIMD_SPHERE_SURFACE_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+// Writes surfaces[0, batch.count) from the batch's rays, hits and spheres. Directions are unit
+// vectors. Bits: as sheaf::scalar::SphereSurface. Reads and writes PaddedCount(batch.count) lanes.
+template <typename Real>
+void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
+                    const HitView<Real>& hits, const HitBatch& batch,
+                    const SurfaceOutput<Real>& surfaces);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_SPHERE_SURFACE_H_

@@ -1,0 +1,18 @@
+// Whether each ray of a batch hits anything.
+#ifndef SHEAF_SIMD_TRACE_OCCLUDED_H_
+#define SHEAF_SIMD_TRACE_OCCLUDED_H_
+
+#include "simd/layout.h"
+
+namespace sheaf::simd {
+
+// Writes occluded[0, count): 1 where some primitive lies within the ray's interval, else 0. The
+// rays as in TraceClosest. Reads and writes PaddedCount(count) lanes.
+template <typename Real>
+void TraceOccluded(const GeometryView<Real>& geometry, const RayView<Real>& rays,
+                   const RayIntervals<Real>& intervals, std::uint32_t count,
+                   std::uint32_t* occluded);
+
+}  // namespace sheaf::simd
+
+#endif  // SHEAF_SIMD_TRACE_OCCLUDED_H_

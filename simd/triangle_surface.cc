@@ -1,0 +1,111 @@
+#include "simd/triangle_surface.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/triangle_surface.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/math-inl.h"
+#include "simd/roundoffs.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
+                           const HitView<Real>& hits, const HitBatch& batch,
+                           const SurfaceOutput<Real>& surfaces) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const IdLanes<NarrowLanes<Real>> di;
+  using W = hn::Vec<WideLanes<Real>>;
+  using Wide = hn::TFromD<WideLanes<Real>>;
+  for (std::uint32_t i = 0; i < batch.count; i += LaneCount(dn)) {
+    // Lanes past the count gather element 0.
+    const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
+    const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
+    const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
+    const auto direction_x = GatherAt(dn, rays.direction_x, ray);
+    const auto direction_y = GatherAt(dn, rays.direction_y, ray);
+    const auto direction_z = GatherAt(dn, rays.direction_z, ray);
+    const W w1 = Widen(GatherAt(dn, hits.u, ray)), w2 = Widen(GatherAt(dn, hits.v, ray));
+    const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
+    const auto mean = [&](W a, W b, W c) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Mul(a, w0), hn::Mul(b, w1)), hn::Mul(c, w2));
+    };
+    const auto vertex = [&](int number, int axis) HWY_ATTR {
+      return Widen(GatherAt(dn, triangles.vertex[number][axis], local));
+    };
+    const W ax = vertex(0, 0), ay = vertex(0, 1), az = vertex(0, 2);
+    const W bx = vertex(1, 0), by = vertex(1, 1), bz = vertex(1, 2);
+    const W cx = vertex(2, 0), cy = vertex(2, 1), cz = vertex(2, 2);
+
+    const W ex = hn::Sub(bx, ax), ey = hn::Sub(by, ay), ez = hn::Sub(bz, az);
+    const W gx = hn::Sub(cx, ax), gy = hn::Sub(cy, ay), gz = hn::Sub(cz, az);
+    W nx = hn::Sub(hn::Mul(ey, gz), hn::Mul(ez, gy));
+    W ny = hn::Sub(hn::Mul(ez, gx), hn::Mul(ex, gz));
+    W nz = hn::Sub(hn::Mul(ex, gy), hn::Mul(ey, gx));
+    Normalize(dw, nx, ny, nz);
+    const auto inside_wide =
+        hn::Gt(Dot(dw, nx, ny, nz, Widen(direction_x), Widen(direction_y), Widen(direction_z)),
+               hn::Zero(dw));
+    const auto sum_of_sizes = [&](W a, W b, W c) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Abs(c));
+    };
+    const W error = hn::Mul(hn::Set(dw, static_cast<Wide>(kPositionRoundoffs<Real>)),
+                            AbsDot(dw, nx, ny, nz, sum_of_sizes(ax, bx, cx),
+                                   sum_of_sizes(ay, by, cy), sum_of_sizes(az, bz, cz)));
+
+    hn::StoreU(Narrow<Real>(mean(ax, bx, cx)), dn, surfaces.position_x + i);
+    hn::StoreU(Narrow<Real>(mean(ay, by, cy)), dn, surfaces.position_y + i);
+    hn::StoreU(Narrow<Real>(mean(az, bz, cz)), dn, surfaces.position_z + i);
+    const auto facing = [&](W n) HWY_ATTR {
+      return Narrow<Real>(hn::IfThenElse(inside_wide, hn::Neg(n), n));
+    };
+    hn::StoreU(facing(nx), dn, surfaces.normal_x + i);
+    hn::StoreU(facing(ny), dn, surfaces.normal_y + i);
+    hn::StoreU(facing(nz), dn, surfaces.normal_z + i);
+    hn::StoreU(direction_x, dn, surfaces.direction_x + i);
+    hn::StoreU(direction_y, dn, surfaces.direction_y + i);
+    hn::StoreU(direction_z, dn, surfaces.direction_z + i);
+    const auto surface_coordinate = [&](int axis) HWY_ATTR {
+      const auto at = [&](int number) HWY_ATTR {
+        return Widen(GatherAt(dn, triangles.uv[number][axis], local));
+      };
+      return Narrow<Real>(mean(at(0), at(1), at(2)));
+    };
+    hn::StoreU(surface_coordinate(0), dn, surfaces.u + i);
+    hn::StoreU(surface_coordinate(1), dn, surfaces.v + i);
+    hn::StoreU(Narrow<Real>(error), dn, surfaces.offset + i);
+    const auto inside =
+        hn::Ne(Narrow<Real>(hn::IfThenElseZero(inside_wide, hn::Set(dw, Wide(1)))), hn::Zero(dn));
+    const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+    const auto id = LoadIds(dn, batch.primitive + i);
+    StoreIds(dn, hn::Or(id, hn::IfThenElseZero(hn::RebindMask(di, inside), bit)),
+             surfaces.source + i);
+    StoreIds(dn, ray, surfaces.ray + i);
+  }
+}
+constexpr auto& TriangleSurfacesF32 = TriangleSurfacesLanes<float>;
+constexpr auto& TriangleSurfacesF64 = TriangleSurfacesLanes<double>;
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+HWY_EXPORT(TriangleSurfacesF32);
+HWY_EXPORT(TriangleSurfacesF64);
+
+template <typename Real>
+void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
+                      const HitView<Real>& hits, const HitBatch& batch,
+                      const SurfaceOutput<Real>& surfaces) {
+  SHEAF_DISPATCH(Real, TriangleSurfaces)(triangles, rays, hits, batch, surfaces);
+}
+template decltype(TriangleSurfaces<float>) TriangleSurfaces<float>;
+template decltype(TriangleSurfaces<double>) TriangleSurfaces<double>;
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE

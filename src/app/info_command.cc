@@ -1,0 +1,201 @@
+#include "src/app/info_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <variant>
+
+#include "simd/target.h"
+#include "src/app/scene_summary.h"
+#include "src/app/standard_output.h"
+#include "src/core/version.h"
+#include "src/formats/scene_json.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Linux names the processor here ("model name" on x86); other systems just say less.
+std::string ProcessorModel() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+Json VectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json MachineJson() {
+  return {
+      {"sheaf", {{"version", kVersion}, {"compiler", kCompiler}, {"build_type", kBuildType}}},
+      {"processor", {{"model", ProcessorModel()}, {"cores", std::thread::hardware_concurrency()}}},
+      {"targets",
+       {{"compiled", simd::CompiledTargets()},
+        {"usable", simd::UsableTargets()},
+        {"chosen", simd::RunningTarget()},
+        {"lanes", simd::RunningLanes()}}},
+  };
+}
+
+Json CameraJson(const Camera& camera) {
+  Json json = {{"name", camera.name}};
+  if (const auto* perspective = std::get_if<Perspective>(&camera.projection)) {
+    json["projection"] = "perspective";
+    json["fov_y"] = perspective->fov_y;
+  } else {
+    json["projection"] = "orthographic";
+    json["height"] = std::get<Orthographic>(camera.projection).height;
+  }
+  json["eye"] = VectorJson(camera.eye);
+  json["look_at"] = VectorJson(camera.look_at);
+  return json;
+}
+
+Json SettingsJson(const Settings& settings) {
+  return {{"width", settings.width},
+          {"height", settings.height},
+          {"samples", settings.samples},
+          {"max_depth", settings.max_depth},
+          {"background", VectorJson(settings.background)},
+          {"ambient", VectorJson(settings.ambient.value_or(settings.background))},
+          {"exposure", settings.exposure},
+          {"transfer", settings.transfer == Transfer::kSrgb ? "srgb" : "linear"}};
+}
+
+Json SceneJson(const std::string& path, const Scene& scene) {
+  const SceneSummary summary = Summarize(scene);
+  Json json = {{"path", path},
+               {"counts",
+                {{"objects", scene.objects.size()},
+                 {"spheres", summary.spheres},
+                 {"triangles", summary.triangles},
+                 {"materials", scene.materials.size()},
+                 {"lights", scene.lights.size()},
+                 {"cameras", scene.cameras.size()},
+                 {"views", scene.views.size()}}},
+               {"bounds", nullptr},
+               {"settings", SettingsJson(scene.settings)},
+               {"cameras", Json::array()},
+               {"views", Json::array()},
+               {"features", Json::array()},
+               {"skipped", Json::array()}};
+  if (summary.bounds) {
+    json["bounds"] = {{"min", VectorJson(summary.bounds->min)},
+                      {"max", VectorJson(summary.bounds->max)}};
+  }
+  for (const Camera& camera : scene.cameras) json["cameras"].push_back(CameraJson(camera));
+  for (const View& view : scene.views) {
+    Json names = Json::array();
+    for (const std::uint32_t index : view.cameras) names.push_back(scene.cameras[index].name);
+    json["views"].push_back({{"name", view.name}, {"cameras", names}});
+  }
+  for (const Feature& feature : summary.features) {
+    json[feature.present ? "features" : "skipped"].push_back(feature.name);
+  }
+  return json;
+}
+
+// The text is laid out from the JSON, so that the two cannot tell different stories.
+
+std::string JoinNames(const Json& names, const char* separator) {
+  if (names.empty()) return "none";
+  return fmt::format("{}", fmt::join(names.get<std::vector<std::string>>(), separator));
+}
+
+std::string VectorText(const Json& v) {
+  return fmt::format("({:g}, {:g}, {:g})", v[0].get<double>(), v[1].get<double>(),
+                     v[2].get<double>());
+}
+
+std::string TextOf(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string MachineText(const Json& machine) {
+  const Json& sheaf = machine["sheaf"];
+  const Json& processor = machine["processor"];
+  const Json& targets = machine["targets"];
+  return fmt::format(
+      "sheaf {}\n"
+      "compiler    {}, {}\n"
+      "processor   {}, {} cores\n"
+      "compiled    {}\n"
+      "usable      {}, scalar\n"
+      "chosen      {}, {} lanes of float\n",
+      TextOf(sheaf["version"]), TextOf(sheaf["compiler"]), TextOf(sheaf["build_type"]),
+      TextOf(processor["model"]), TextOf(processor["cores"]), JoinNames(targets["compiled"], ", "),
+      JoinNames(targets["usable"], ", "), TextOf(targets["chosen"]), TextOf(targets["lanes"]));
+}
+
+std::string SceneText(const Json& scene) {
+  std::string text = fmt::format("\nscene       {}\n", TextOf(scene["path"]));
+  auto out = std::back_inserter(text);
+  const char* separator = "counts      ";
+  for (const auto& [name, count] : scene["counts"].items()) {
+    fmt::format_to(out, "{}{} {}", separator, name, TextOf(count));
+    separator = ", ";
+  }
+  const Json& bounds = scene["bounds"];
+  fmt::format_to(out, "\nbounds      {}\n",
+                 bounds.is_null() ? "none"
+                                  : fmt::format("{} to {}", VectorText(bounds["min"]),
+                                                VectorText(bounds["max"])));
+  const Json& settings = scene["settings"];
+  fmt::format_to(out,
+                 "settings    {}x{}, {} spp, depth {}, background {}, ambient {}, exposure {:g}, "
+                 "{}\n",
+                 TextOf(settings["width"]), TextOf(settings["height"]), TextOf(settings["samples"]),
+                 TextOf(settings["max_depth"]), VectorText(settings["background"]),
+                 VectorText(settings["ambient"]), settings["exposure"].get<double>(),
+                 TextOf(settings["transfer"]));
+  for (const Json& camera : scene["cameras"]) {
+    const bool perspective = camera["projection"] == "perspective";
+    fmt::format_to(out, "camera      {}: {} {:g}{}, eye {}, look at {}\n", TextOf(camera["name"]),
+                   TextOf(camera["projection"]),
+                   camera[perspective ? "fov_y" : "height"].get<double>(),
+                   perspective ? " degrees" : " units", VectorText(camera["eye"]),
+                   VectorText(camera["look_at"]));
+  }
+  for (const Json& view : scene["views"]) {
+    fmt::format_to(out, "view        {}: {}\n", TextOf(view["name"]),
+                   JoinNames(view["cameras"], ", "));
+  }
+  fmt::format_to(out, "has         {}\n", JoinNames(scene["features"], ", "));
+  fmt::format_to(out, "skipped     {}\n", JoinNames(scene["skipped"], ", "));
+  return text;
+}
+
+}  // namespace
+
+CLI::App* AddInfoCommand(CLI::App& app, InfoRequest& request) {
+  CLI::App* info = app.add_subcommand("info", "Show the machine's SIMD targets, or a scene");
+  info->add_option("SCENE", request.scene, "A scene file to describe")->option_text(" ");
+  info->add_flag("--json", request.json, "The same as JSON");
+  return info;
+}
+
+Status RunInfo(const InfoRequest& request) {
+  Json json = MachineJson();
+  if (!request.scene.empty()) {
+    const Result<Scene> scene = ReadSceneJson(request.scene);
+    if (!scene) return scene.error();
+    json["scene"] = SceneJson(request.scene, scene.value());
+  }
+  if (request.json) {
+    return WriteStandardOutput(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  std::string text = MachineText(json);
+  if (json.contains("scene")) text += SceneText(json["scene"]);
+  return WriteStandardOutput(text);
+}
+
+}  // namespace sheaf

@@ -1,0 +1,50 @@
+#include "src/app/parse_options.h"
+
+#include <charconv>
+
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+std::optional<int> ParseInteger(std::string_view text, int min, int max) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (value < min || value > max) return std::nullopt;
+  return value;
+}
+
+std::optional<PixelSize> ParseSize(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos) return std::nullopt;
+  const std::optional<int> width = ParseInteger(text.substr(0, cross), 1, kMaxImageSide);
+  const std::optional<int> height = ParseInteger(text.substr(cross + 1), 1, kMaxImageSide);
+  if (!width || !height) return std::nullopt;
+  return PixelSize{*width, *height};
+}
+
+std::optional<PixelRect> ParseRect(std::string_view text) {
+  const std::vector<std::string> words = SplitAtCommas(text);
+  if (words.size() != 4) return std::nullopt;
+  int sides[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::optional<int> side = ParseInteger(words[i], 0, kMaxImageSide);
+    if (!side) return std::nullopt;
+    sides[i] = *side;
+  }
+  const PixelRect rect{sides[0], sides[1], sides[2], sides[3]};
+  if (rect.width() <= 0 || rect.height() <= 0) return std::nullopt;
+  return rect;
+}
+
+std::vector<std::string> SplitAtCommas(std::string_view text) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.emplace_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace sheaf

@@ -1,0 +1,66 @@
+// Tells a person on stderr how a frame comes along, and tells the frame when a person wants it to
+// stop.
+#ifndef SHEAF_APP_PROGRESS_H_
+#define SHEAF_APP_PROGRESS_H_
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "src/render/render.h"
+
+namespace sheaf {
+
+enum class ProgressStyle {
+  kBar,    // one line that is drawn over: a terminal
+  kPlain,  // a line at the start, one every tenth (at most one a second), one at the end
+  kNone,
+};
+
+// kBar where stderr is a terminal that can move its cursor, else kPlain.
+ProgressStyle AutomaticProgressStyle();
+
+// Watches one frame from construction to Finish() or destruction, in a thread that wakes ten times
+// a second. It forwards PendingSignal() to the renderer in every style.
+class FrameWatch {
+ public:
+  // `label` names the frame, `pixels` is how many it has.
+  FrameWatch(ProgressStyle style, std::string label, const RenderOptions& options,
+             std::uint64_t pixels);
+  FrameWatch(const FrameWatch&) = delete;
+  FrameWatch& operator=(const FrameWatch&) = delete;
+  ~FrameWatch();  // of a frame that failed: the bar goes away, no last line
+
+  RenderProgress* progress() { return &progress_; }
+
+  // Prints the frame's last line: rays, seconds, rays a second.
+  void Finish(const RenderStats& stats);
+
+ private:
+  void Watch();
+  void StopWatching();
+  void DrawBar(double seconds);
+  void PrintLine(double seconds);
+
+  const ProgressStyle style_;
+  const std::string label_;
+  const std::uint64_t pixels_;
+  RenderProgress progress_;
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool finished_ = false;  // guarded by mutex_
+
+  // Of the watching thread alone.
+  bool bar_drawn_ = false;
+  double last_line_seconds_ = 0.0;
+  std::uint64_t last_line_tenth_ = 0;
+
+  std::thread thread_;  // last: it starts when everything else is there
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_PROGRESS_H_

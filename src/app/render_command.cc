@@ -1,0 +1,313 @@
+#include "src/app/render_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <climits>
+#include <cstdio>
+#include <utility>
+
+#include "simd/target.h"
+#include "src/app/interrupt.h"
+#include "src/app/progress.h"
+#include "src/app/standard_output.h"
+#include "src/app/statistics_json.h"
+#include "src/core/atomic_file.h"
+#include "src/formats/picture.h"
+#include "src/formats/printable.h"
+#include "src/formats/scene_json.h"
+#include "src/formats/suggest_name.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+namespace {
+
+constexpr std::string_view kCameraField = "{camera}";
+
+// One picture to make.
+struct Frame {
+  const Camera* camera;
+  std::string path;
+};
+
+Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+
+// Adds an option whose text `parse` understands; `expected` completes "--name: X is not ...".
+template <typename T, typename Parse>
+void AddParsed(CLI::App& app, const char* name, T& value, const char* placeholder,
+               const std::string& expected, const char* description, Parse parse) {
+  app.add_option(
+         name,
+         [name, &value, expected, parse](const CLI::results_t& words) {
+           auto parsed = parse(words.front());
+           if (!parsed) {
+             throw CLI::ValidationError(name,
+                                        fmt::format("\"{}\" is not {}", words.front(), expected));
+           }
+           value = *std::move(parsed);
+           return true;
+         },
+         description)
+      ->option_text(placeholder);
+}
+
+void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
+                const char* description) {
+  const std::string expected = max == INT_MAX ? fmt::format("a whole number from {}", min)
+                                              : fmt::format("a whole number {} to {}", min, max);
+  AddParsed(app, name, value, "N", expected, description,
+            [min, max](const std::string& text) { return ParseInteger(text, min, max); });
+}
+
+// Names without a blank or a double among them.
+std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
+  std::vector<std::string> names = SplitAtCommas(text);
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  const bool repeated = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  if (repeated || sorted.front().empty()) return std::nullopt;
+  return names;
+}
+
+template <typename T>
+std::vector<std::string> NamesOf(const std::vector<T>& items) {
+  std::vector<std::string> names;
+  for (const T& item : items) names.push_back(item.name);
+  return names;
+}
+
+template <typename T>
+const T* FindByName(const std::vector<T>& items, const std::string& name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+// E.g. `--camera: unknown camera "frnt"; did you mean "front"? (the scene has: front, up, down)`.
+Error UnknownName(std::string_view option, std::string_view kind, const std::string& name,
+                  std::string_view title, const std::vector<std::string>& choices) {
+  const std::string list = fmt::format("{}", fmt::join(choices, ", "));
+  return Usage(fmt::format("{}: unknown {} \"{}\"{} ({}: {})", option, kind, Printable(name),
+                           DidYouMean(name, {choices.begin(), choices.end()}), title,
+                           choices.empty() ? "none" : Printable(list)));
+}
+
+Status ChooseTarget(const std::string& target) {
+  if (target == "scalar" || simd::ForceTarget(target)) return Done{};
+  std::vector<std::string> choices = {"auto", "scalar"};
+  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
+  const std::vector<std::string> compiled = simd::CompiledTargets();
+  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
+    return Usage(fmt::format("--target: this processor does not run \"{}\" (usable: {})", target,
+                             fmt::join(choices, ", ")));
+  }
+  return UnknownName("--target", "target", target, "usable", choices);
+}
+
+// What is wrong without a look at the scene: the command line first, then the places to write to.
+Status CheckRequest(const RenderRequest& request) {
+  if (request.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
+    return Usage(
+        fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
+  }
+  if (const Status known = CheckPicturePath(request.output); !known) return known;
+  if (const Status chosen = ChooseTarget(request.target); !chosen) return chosen;
+
+  // Where the field stands in the folder's name, PlanFrames checks each folder.
+  const std::string folder = request.output.substr(0, request.output.rfind('/') + 1);
+  if (folder.find(kCameraField) == std::string::npos) {
+    if (const Status writable = CheckWritable(request.output); !writable) return writable;
+  }
+  if (!request.statistics.empty() && request.statistics != "-") {
+    return CheckWritable(request.statistics);
+  }
+  return Done{};
+}
+
+Result<std::vector<const Camera*>> ChooseCameras(const RenderRequest& request, const Scene& scene) {
+  std::vector<const Camera*> cameras;
+  if (!request.view.empty()) {
+    const View* view = FindByName(scene.views, request.view);
+    if (view == nullptr) {
+      return UnknownName("--views", "view", request.view, "the scene has", NamesOf(scene.views));
+    }
+    for (const std::uint32_t index : view->cameras) cameras.push_back(&scene.cameras[index]);
+  }
+  for (const std::string& name : request.cameras) {
+    const Camera* camera = FindByName(scene.cameras, name);
+    if (camera == nullptr) {
+      return UnknownName("--camera", "camera", name, "the scene has", NamesOf(scene.cameras));
+    }
+    cameras.push_back(camera);
+  }
+  if (cameras.empty()) {
+    if (scene.cameras.empty()) {
+      return Error{ErrorKind::kScene, fmt::format("{}: the scene has no camera", request.scene)};
+    }
+    cameras.push_back(&scene.cameras.front());
+  }
+  return cameras;
+}
+
+// Puts the camera's name into the path, unless it would lead into another folder.
+Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {
+  std::string path = output;
+  std::size_t at = path.find(kCameraField);
+  if (at == std::string::npos) return path;
+  const bool plain = std::none_of(camera.begin(), camera.end(), [](char c) {
+    return c == '/' || (static_cast<unsigned char>(c) < 0x20);
+  });
+  if (!plain || camera.empty()) {
+    return Usage(
+        fmt::format("-o {}: the camera \"{}\" has no name for a file", output, Printable(camera)));
+  }
+  while (at != std::string::npos) {
+    path.replace(at, kCameraField.size(), camera);
+    at = path.find(kCameraField, at + camera.size());
+  }
+  return path;
+}
+
+Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {
+  const Result<std::vector<const Camera*>> cameras = ChooseCameras(request, scene);
+  if (!cameras) return cameras.error();
+  if (cameras.value().size() > 1 && request.output.find(kCameraField) == std::string::npos) {
+    return Usage(fmt::format("-o {}: the view \"{}\" has {} cameras, which need {} in the path",
+                             request.output, request.view, cameras.value().size(), kCameraField));
+  }
+  std::vector<Frame> frames;
+  for (const Camera* camera : cameras.value()) {
+    const Result<std::string> path = ExpandPath(request.output, camera->name);
+    if (!path) return path.error();
+    if (const Status writable = CheckWritable(path.value()); !writable) return writable.error();
+    frames.push_back({camera, path.value()});
+  }
+  return frames;
+}
+
+Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings& settings) {
+  RenderOptions options;
+  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
+  options.width = size.width;
+  options.height = size.height;
+  options.samples = request.samples.value_or(settings.samples);
+  options.max_depth = request.max_depth.value_or(settings.max_depth);
+  options.crop = request.crop;
+  options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
+  options.threads = request.threads.value_or(options.threads);
+  options.tile_size = request.tile_size.value_or(options.tile_size);
+  options.timing = request.statistics.empty() ? Timing::kOff : Timing::kOn;
+  if (options.crop && (options.crop->x1 > size.width || options.crop->y1 > size.height)) {
+    return Usage(fmt::format("--crop: {},{},{},{} is not inside the picture of {}x{}",
+                             options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1,
+                             size.width, size.height));
+  }
+  return options;
+}
+
+ProgressStyle ChooseProgressStyle(const RenderRequest& request) {
+  if (request.quiet || request.progress == "none") return ProgressStyle::kNone;
+  return request.progress == "plain" ? ProgressStyle::kPlain : AutomaticProgressStyle();
+}
+
+std::uint64_t PixelCount(const RenderOptions& options) {
+  const int width = options.crop ? options.crop->width() : options.width;
+  const int height = options.crop ? options.crop->height() : options.height;
+  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
+Result<FrameRecord> RenderFrame(const Scene& scene, const Frame& frame,
+                                const RenderOptions& options, ProgressStyle style,
+                                std::string label) {
+  FrameRecord record{frame.camera->name, frame.path, options, {}};
+  FrameWatch watch(style, std::move(label), options, PixelCount(options));
+  const Result<Film> film = Render(scene, *frame.camera, options, &record.stats, watch.progress());
+  // A signal in the last tenth of a second may find the frame finished: it stops the command still.
+  if (PendingSignal() != 0 || (!film && film.error().kind == ErrorKind::kInterrupted)) {
+    return Error{ErrorKind::kInterrupted,
+                 fmt::format("interrupted; {} was not written", frame.path)};
+  }
+  if (!film) return film.error();
+  watch.Finish(record.stats);
+  const Status written = WritePicture(film.value(), scene.settings.transfer, frame.path);
+  if (!written) return written.error();
+  return record;
+}
+
+Status WriteStatistics(const std::string& destination, const std::string& json) {
+  if (destination.empty()) return Done{};
+  return destination == "-" ? WriteStandardOutput(json) : WriteFileWhole(destination, json);
+}
+
+}  // namespace
+
+CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
+  CLI::App* render = app.add_subcommand("render", "Render a scene into pictures");
+  render->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
+  AddParsed(*render, "--camera", request.cameras, "NAME[,NAME]", "a list of different camera names",
+            "The cameras to render; the scene's first if absent", &ParseNames);
+  render->add_option("--views", request.view, "A view: a set of cameras that the scene names")
+      ->option_text("SET")
+      ->excludes("--camera");
+  render
+      ->add_option("-o,--output", request.output,
+                   "The picture, .png or .pfm (needed); {camera} becomes the camera's name")
+      ->required()
+      ->option_text("PATH");
+  AddParsed(*render, "--size", request.size, "WxH",
+            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
+            "Pixels of the whole picture", &ParseSize);
+  AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
+  AddInteger(*render, "--max-depth", request.max_depth, 0, INT_MAX,
+             "A ray deeper than this is black; primary rays have depth 0");
+  AddParsed(*render, "--crop", request.crop, "x0,y0,x1,y1",
+            "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",
+            "Render this part alone; x1 and y1 are exclusive", &ParseRect);
+  render->add_option("--target", request.target, "SIMD target; sheaf info lists the usable ones")
+      ->option_text("auto|scalar|NAME");
+  render->add_option("--precision", request.precision, "Arithmetic")
+      ->option_text("strict|double")
+      ->check(CLI::IsMember({"strict", "double"}));
+  AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddInteger(*render, "--tile", request.tile_size, 1, kMaxTileSize,
+             "Pixels a side of a tile; changes no picture");
+  render->add_option("--progress", request.progress, "What stderr shows meanwhile")
+      ->option_text("auto|plain|none")
+      ->check(CLI::IsMember({"auto", "plain", "none"}));
+  render->add_flag("-q,--quiet", request.quiet, "Only errors on stderr");
+  // A flag that may hold a value: an option would swallow the word after it.
+  render->add_flag("--json{-}", request.statistics, "Statistics as JSON to stdout, or into FILE")
+      ->option_text("[=FILE]")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  return render;
+}
+
+Status RunRender(const RenderRequest& request) {
+  // Whatever can be refused is refused before the work.
+  if (const Status sound = CheckRequest(request); !sound) return sound;
+  const Result<Scene> scene = ReadSceneJson(request.scene);
+  if (!scene) return scene.error();
+  const Result<RenderOptions> options = MergeOptions(request, scene.value().settings);
+  if (!options) return options.error();
+  const Result<std::vector<Frame>> frames = PlanFrames(request, scene.value());
+  if (!frames) return frames.error();
+
+  CatchInterrupts();
+  const ProgressStyle style = ChooseProgressStyle(request);
+  const std::size_t count = frames.value().size();
+  std::vector<FrameRecord> records;
+  for (const Frame& frame : frames.value()) {
+    std::string label = Printable(frame.camera->name);
+    if (count > 1) label += fmt::format(" {}/{}", records.size() + 1, count);
+    Result<FrameRecord> record = RenderFrame(scene.value(), frame, options.value(), style, label);
+    if (!record) return record.error();
+    // Not fmt::print: it throws where stderr is gone, which is no reason to stop.
+    if (!request.quiet) std::fprintf(stderr, "wrote %s\n", frame.path.c_str());
+    records.push_back(std::move(record).value());
+  }
+  return WriteStatistics(request.statistics, StatisticsJson(request.scene, records));
+}
+
+}  // namespace sheaf

@@ -1,0 +1,45 @@
+// `sheaf render`: a scene file becomes pictures.
+#ifndef SHEAF_APP_RENDER_COMMAND_H_
+#define SHEAF_APP_RENDER_COMMAND_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/app/parse_options.h"
+#include "src/core/error.h"
+#include "src/render/render.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sheaf {
+
+// The command line as it was given. What is absent comes from the scene.
+struct RenderRequest {
+  std::string scene;
+  std::vector<std::string> cameras;  // empty: the view's, or the scene's first
+  std::string view;                  // empty: none
+  std::string output;
+  std::optional<PixelSize> size;
+  std::optional<int> samples, max_depth;
+  std::string target = "auto";
+  std::string precision = "strict";
+  std::optional<int> threads, tile_size;
+  std::optional<PixelRect> crop;
+  std::string progress = "auto";
+  bool quiet = false;
+  std::string statistics;  // empty: none; "-": stdout; else a file
+};
+
+// Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
+CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request);
+
+// Checks all that can be checked, renders every camera, writes each picture as it is ready and the
+// statistics at the end.
+Status RunRender(const RenderRequest& request);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_RENDER_COMMAND_H_

@@ -1,0 +1,94 @@
+#include "src/app/scene_summary.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <variant>
+
+namespace sheaf {
+namespace {
+
+bool IsBlack(const Colour& colour) { return colour == Colour(0.0); }
+
+// Adds one shape to the counts and the bounds.
+class ShapeCounter {
+ public:
+  explicit ShapeCounter(SceneSummary& summary) : summary_(summary) {}
+
+  void operator()(const Sphere& sphere) {
+    ++summary_.spheres;
+    Include(sphere.center - Vec3d(sphere.radius));
+    Include(sphere.center + Vec3d(sphere.radius));
+  }
+  void operator()(const Quad& quad) {
+    summary_.triangles += 2;
+    for (const Vec3d& corner : quad.corners) Include(corner);
+  }
+  void operator()(const Triangle& triangle) {
+    ++summary_.triangles;
+    for (const Vec3d& vertex : triangle.vertices) Include(vertex);
+  }
+
+ private:
+  void Include(const Vec3d& point) {
+    if (!summary_.bounds) summary_.bounds = Bounds{point, point};
+    summary_.bounds->min = glm::min(summary_.bounds->min, point);
+    summary_.bounds->max = glm::max(summary_.bounds->max, point);
+  }
+
+  SceneSummary& summary_;
+};
+
+}  // namespace
+
+SceneSummary Summarize(const Scene& scene) {
+  SceneSummary summary;
+  ShapeCounter counter(summary);
+  std::vector<const Material*> used;
+  for (const Object& object : scene.objects) {
+    std::visit(counter, object.shape);
+    used.push_back(&scene.materials[object.material]);
+  }
+
+  const auto any_material = [&](auto test) {
+    return std::any_of(used.begin(), used.end(), [&](const Material* m) { return test(*m); });
+  };
+  const auto any_light = [&](auto test) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(), test);
+  };
+  const auto any_camera = [&](auto test) {
+    return std::any_of(scene.cameras.begin(), scene.cameras.end(), test);
+  };
+  const Colour ambient_light = scene.settings.ambient.value_or(scene.settings.background);
+  const bool lit = any_material([](const Material& m) { return m.kd > 0.0 || m.ks > 0.0; });
+  summary.features = {
+      {"spheres", summary.spheres > 0},
+      {"triangles", summary.triangles > 0},
+      {"checker textures", any_material([](const Material& m) {
+         return std::holds_alternative<Checker>(m.base_colour);
+       })},
+      {"ambient light",
+       !IsBlack(ambient_light) && any_material([](const Material& m) { return m.ambient > 0.0; })},
+      {"point lights",
+       any_light([](const Light& l) { return std::holds_alternative<PointLight>(l.source); })},
+      {"directional lights", any_light([](const Light& l) {
+         return std::holds_alternative<DirectionalLight>(l.source);
+       })},
+      {"shadows", lit && any_light([](const Light& l) { return l.casts_shadows; })},
+      {"highlights",
+       !scene.lights.empty() && any_material([](const Material& m) { return m.ks > 0.0; })},
+      {"mirror reflection", any_material([](const Material& m) { return !IsBlack(m.reflect); })},
+      {"refraction and Fresnel reflection",
+       any_material([](const Material& m) { return !IsBlack(m.transmit); })},
+      {"perspective cameras", any_camera([](const Camera& c) {
+         return std::holds_alternative<Perspective>(c.projection);
+       })},
+      {"orthographic cameras", any_camera([](const Camera& c) {
+         return std::holds_alternative<Orthographic>(c.projection);
+       })},
+      {"several samples a pixel", scene.settings.samples > 1},
+      {"sRGB transfer", scene.settings.transfer == Transfer::kSrgb},
+  };
+  return summary;
+}
+
+}  // namespace sheaf

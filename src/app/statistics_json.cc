@@ -1,0 +1,64 @@
+#include "src/app/statistics_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "src/core/version.h"
+
+namespace sheaf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json SecondsJson(const FrameRecord& frame) {
+  Json seconds = {{"wall", frame.stats.wall_seconds}, {"compile", frame.stats.compile_seconds}};
+  // The scalar baseline traces ray by ray and has no phases to time.
+  if (frame.options.engine == Engine::kScalar) return seconds;
+  Json& phases = seconds["phases"] = Json::object();
+  for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
+    phases[PhaseName(static_cast<Phase>(i))] = frame.stats.phase_seconds[i];
+  }
+  return seconds;
+}
+
+Json FrameJson(const FrameRecord& frame) {
+  const RenderOptions& options = frame.options;
+  const RenderStats& stats = frame.stats;
+  const double rays = static_cast<double>(stats.rays.traced());
+  Json json = {
+      {"camera", frame.camera},
+      {"picture", frame.picture},
+      {"width", options.width},
+      {"height", options.height},
+      {"samples", options.samples},
+      {"max_depth", options.max_depth},
+      {"target", stats.target},
+      {"precision", options.precision == Precision::kDouble ? "double" : "strict"},
+      {"threads", stats.threads},
+      {"tile", options.tile_size},
+      {"primitives",
+       {{"total", stats.primitives}, {"spheres", stats.spheres}, {"triangles", stats.triangles}}},
+      {"rays",
+       {{"primary", stats.rays.primary},
+        {"shadow", stats.rays.shadow},
+        {"reflected", stats.rays.reflected},
+        {"refracted", stats.rays.refracted},
+        {"beyond_depth", stats.rays.beyond_depth},
+        {"traced", stats.rays.traced()}}},
+      {"seconds", SecondsJson(frame)},
+      {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
+  };
+  if (options.crop) {
+    json["crop"] = {options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string StatisticsJson(const std::string& scene_path, const std::vector<FrameRecord>& frames) {
+  Json json = {{"sheaf", kVersion}, {"scene", scene_path}, {"frames", Json::array()}};
+  for (const FrameRecord& frame : frames) json["frames"].push_back(FrameJson(frame));
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sheaf

@@ -1,0 +1,26 @@
+// The statistics of `sheaf render --json`; docs/command.md describes every field.
+#ifndef SHEAF_APP_STATISTICS_JSON_H_
+#define SHEAF_APP_STATISTICS_JSON_H_
+
+#include <string>
+#include <vector>
+
+#include "src/render/render.h"
+
+namespace sheaf {
+
+// One rendered and written picture.
+struct FrameRecord {
+  std::string camera;
+  std::string picture;  // its path
+  RenderOptions options;
+  RenderStats stats;
+};
+
+// One JSON object, indented, with a newline at its end. Bytes of a name that are not UTF-8 are
+// replaced.
+std::string StatisticsJson(const std::string& scene_path, const std::vector<FrameRecord>& frames);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_STATISTICS_JSON_H_

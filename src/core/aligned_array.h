@@ -1,0 +1,49 @@
+// An owning array aligned for whole-vector loads and stores.
+#ifndef SHEAF_CORE_ALIGNED_ARRAY_H_
+#define SHEAF_CORE_ALIGNED_ARRAY_H_
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+#include "simd/layout.h"
+
+namespace sheaf {
+
+// Aligned to kAlignment. Elements are trivial and start as zeros, so that padding lanes hold
+// numbers.
+template <typename T>
+class AlignedArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  AlignedArray() = default;
+
+  // Drops what it held. Throws std::bad_alloc where memory runs out.
+  void Allocate(std::size_t size) {
+    data_.reset(static_cast<T*>(::operator new(size * sizeof(T), std::align_val_t(kAlignment))));
+    std::memset(static_cast<void*>(data_.get()), 0, size * sizeof(T));
+    size_ = size;
+  }
+
+  std::size_t size() const { return size_; }
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  T& operator[](std::size_t i) { return data_.get()[i]; }
+  const T& operator[](std::size_t i) const { return data_.get()[i]; }
+
+ private:
+  struct Free {
+    void operator()(T* p) const {
+      ::operator delete(static_cast<void*>(p), std::align_val_t(kAlignment));
+    }
+  };
+  std::unique_ptr<T, Free> data_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_CORE_ALIGNED_ARRAY_H_

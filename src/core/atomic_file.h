@@ -1,0 +1,46 @@
+// A file that appears whole or not at all: written beside its place, then renamed into it.
+#ifndef SHEAF_CORE_ATOMIC_FILE_H_
+#define SHEAF_CORE_ATOMIC_FILE_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "src/core/error.h"
+
+namespace sheaf {
+
+// Whether `path` can be written: its folder exists and takes new files, and it is itself absent, a
+// writable file or a device. kInputOutput otherwise. Meant for a check before long work.
+Status CheckWritable(const std::string& path);
+
+// Bytes go to a hidden temporary in the folder of `path`; Commit() renames it, so that a reader
+// sees the old file or the new one. Without a Commit the temporary is removed and the old file
+// stays. Pipes and devices (anything under /dev) have no whole to protect: bytes go straight there.
+class AtomicFile {
+ public:
+  static Result<AtomicFile> Create(const std::string& path);
+
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) = delete;
+  ~AtomicFile();
+
+  // After a failed Write the only call left is the destructor.
+  Status Write(const void* data, std::size_t size);
+  Status Commit();
+
+ private:
+  AtomicFile(int descriptor, std::string path, std::string destination, std::string temporary);
+
+  int descriptor_;           // -1 once committed or moved from
+  std::string path_;         // as the caller spelled it, for messages
+  std::string destination_;  // where the rename goes: `path_` with symbolic links followed
+  std::string temporary_;    // empty where bytes go straight to the destination
+};
+
+// Create, Write and Commit in one.
+Status WriteFileWhole(const std::string& path, std::string_view bytes);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_CORE_ATOMIC_FILE_H_

@@ -1,0 +1,22 @@
+// A parallel loop over independent items, on oneTBB.
+#ifndef SHEAF_CORE_PARALLEL_H_
+#define SHEAF_CORE_PARALLEL_H_
+
+#include <cstdint>
+#include <functional>
+
+namespace sheaf {
+
+// `threads` itself, or the number of cores this process may use where it is 0.
+int ThreadCount(int threads);
+
+// Calls body(worker, item) for every item in [0, count), each once, on at most `threads` >= 1
+// threads. Calls with the same worker, in [0, threads), never overlap, so that a worker may own its
+// buffers. Items are handed out one by one. What a body throws is thrown here, after the loop has
+// stopped.
+void ParallelFor(int threads, std::uint32_t count,
+                 const std::function<void(int worker, std::uint32_t item)>& body);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_CORE_PARALLEL_H_

@@ -1,0 +1,133 @@
+#include "src/formats/pfm.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "src/core/atomic_file.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+namespace {
+
+constexpr std::size_t kBytesPerPixel = 3 * sizeof(float);
+
+Error Malformed(const std::string& path, std::string_view what) {
+  return {ErrorKind::kInputOutput, fmt::format("{}: {}", path, what)};
+}
+
+std::uint32_t SwapBytes(std::uint32_t bits) {
+  return bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
+}
+
+void SwapEachFloat(std::uint8_t* bytes, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, bytes + 4 * i, 4);
+    bits = SwapBytes(bits);
+    std::memcpy(bytes + 4 * i, &bits, 4);
+  }
+}
+
+// Grows with what the file really holds, so that no header makes it allocate more.
+Result<std::string> ReadBytes(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (!file) return Malformed(path, std::strerror(errno));
+  std::string bytes;
+  std::vector<char> block(1 << 16);
+  while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
+    bytes.append(block.data(), count);
+  }
+  if (std::ferror(file.get())) return Malformed(path, std::strerror(errno));
+  return bytes;
+}
+
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+// Takes white space and the word after it off the front of `text`.
+std::string_view TakeWord(std::string_view& text) {
+  while (!text.empty() && IsSpace(text.front())) text.remove_prefix(1);
+  std::size_t length = 0;
+  while (length < text.size() && !IsSpace(text[length])) ++length;
+  const std::string_view word = text.substr(0, length);
+  text.remove_prefix(length);
+  return word;
+}
+
+template <typename T>
+bool ParseWhole(std::string_view word, T& value) {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+}  // namespace
+
+Status WritePfm(const Film& film, const std::string& path) {
+  Result<AtomicFile> file = AtomicFile::Create(path);
+  if (!file) return file.error();
+  const std::string header = fmt::format("PF\n{} {}\n-1.0\n", film.width, film.height);
+  Status status = file.value().Write(header.data(), header.size());
+
+  std::vector<std::uint8_t> row(kBytesPerPixel * static_cast<std::size_t>(film.width));
+  for (int y = film.height - 1; y >= 0 && status.ok(); --y) {
+    std::memcpy(row.data(), film.pixel(0, y), row.size());
+    if constexpr (std::endian::native == std::endian::big) {
+      SwapEachFloat(row.data(), row.size() / 4);
+    }
+    status = file.value().Write(row.data(), row.size());
+  }
+  if (!status) return status;
+  return file.value().Commit();
+}
+
+Result<Film> ReadPfm(const std::string& path) {
+  const Result<std::string> bytes = ReadBytes(path);
+  if (!bytes) return bytes.error();
+  std::string_view rest = bytes.value();
+
+  const std::string_view magic = TakeWord(rest);
+  if (magic == "Pf") return Malformed(path, "a grey PFM; a colour one (PF) is needed");
+  if (magic != "PF") return Malformed(path, "no PFM: it does not begin with PF");
+  int width = 0, height = 0;
+  double scale = 0.0;
+  if (!ParseWhole(TakeWord(rest), width) || !ParseWhole(TakeWord(rest), height) || width < 1 ||
+      height < 1 || width > kMaxImageSide || height > kMaxImageSide) {
+    return Malformed(
+        path, fmt::format("the PFM header needs a width and a height of 1 to {}", kMaxImageSide));
+  }
+  if (!ParseWhole(TakeWord(rest), scale) || !std::isfinite(scale) || scale == 0.0) {
+    return Malformed(path, "the PFM header needs a scale other than 0");
+  }
+  // One single byte of white space ends the header; the next may be a float's.
+  if (rest.empty() || !IsSpace(rest.front())) return Malformed(path, "the PFM header is cut short");
+  rest.remove_prefix(1);
+
+  const std::size_t row_bytes = kBytesPerPixel * static_cast<std::size_t>(width);
+  const std::size_t expected = row_bytes * static_cast<std::size_t>(height);
+  if (rest.size() != expected) {
+    return Malformed(path, fmt::format("{}x{} pixels need {} bytes after the header, not {}", width,
+                                       height, expected, rest.size()));
+  }
+  Film film(width, height);
+  for (int y = 0; y < height; ++y) {
+    std::memcpy(film.pixel(0, height - 1 - y),
+                rest.data() + row_bytes * static_cast<std::size_t>(y), row_bytes);
+  }
+  const bool little = scale < 0.0;
+  if (little != (std::endian::native == std::endian::little)) {
+    SwapEachFloat(reinterpret_cast<std::uint8_t*>(film.rgb.data()), film.rgb.size());
+  }
+  return film;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,23 @@
+// PFM, the portable float map: a text header, then rows of 32-bit floats from the bottom to the
+// top.
+#ifndef SHEAF_FORMATS_PFM_H_
+#define SHEAF_FORMATS_PFM_H_
+
+#include <string>
+
+#include "src/core/error.h"
+#include "src/scene/film.h"
+
+namespace sheaf {
+
+// Writes a little-endian colour map ("PF", scale -1); every bit of every float survives, NaN too.
+Status WritePfm(const Film& film, const std::string& path);
+
+// Reads a colour map of either byte order. The scale's size is ignored, as most readers do.
+// kInputOutput for an unreadable file, a malformed header, a side over kMaxImageSide, or a count of
+// bytes that is not what the header promises.
+Result<Film> ReadPfm(const std::string& path);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_PFM_H_

@@ -1,0 +1,117 @@
+#include "src/formats/scene_lights.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "src/formats/scene_values.h"
+#include "src/formats/suggest_name.h"
+
+namespace sheaf {
+namespace {
+
+// Times a colour and an exposure, both up to 1e6, this still fits a float.
+constexpr NumberRange kIntensity{0.0, 1e24, "a number in [0, 1e24]"};
+constexpr NumberRange kFalloffTerm{0.0, 1e30, "a number in [0, 1e30]"};
+
+struct NamedFalloff {
+  std::string_view name;
+  Falloff falloff;
+};
+constexpr NamedFalloff kFalloffs[] = {
+    {"inverse-square", {0.0, 0.0, 1.0}},
+    {"linear", {0.0, 1.0, 0.0}},
+    {"constant", {1.0, 0.0, 0.0}},
+};
+constexpr std::string_view kFalloffText =
+    "\"inverse-square\", \"linear\", \"constant\" or [kc, kl, kq]";
+
+void ReadFalloff(const JsonCursor& value, Falloff* out) {
+  if (value.Is(JsonKind::kString)) {
+    std::vector<std::string_view> known;
+    for (const NamedFalloff& entry : kFalloffs) {
+      if (value.text() == entry.name) {
+        *out = entry.falloff;
+        return;
+      }
+      known.push_back(entry.name);
+    }
+    return value.Fail(fmt::format("expected {}{}", kFalloffText, DidYouMean(value.text(), known)));
+  }
+  const auto terms = value.ReadTuple<3>(kFalloffText);
+  if (!terms) return;
+  Falloff falloff{0.0, 0.0, 0.0};
+  const bool constant = (*terms)[0].Read(kFalloffTerm, &falloff.constant);
+  const bool linear = (*terms)[1].Read(kFalloffTerm, &falloff.linear);
+  const bool quadratic = (*terms)[2].Read(kFalloffTerm, &falloff.quadratic);
+  if (!constant || !linear || !quadratic) return;
+  // Smaller terms would be zero in a float, and light would be divided by it.
+  if (falloff.constant < 1e-30 && falloff.linear < 1e-30 && falloff.quadratic < 1e-30) {
+    return value.Fail("one of the terms must be at least 1e-30");
+  }
+  *out = falloff;
+}
+
+PointLight ReadPointLight(const JsonCursor& value) {
+  PointLight light;
+  JsonObject object(value);
+  ReadVector(object.Required("position"), &light.position);
+  ReadFalloff(object.Optional("falloff"), &light.falloff);
+  object.Finish();
+  return light;
+}
+
+DirectionalLight ReadDirectionalLight(const JsonCursor& value) {
+  DirectionalLight light;
+  JsonObject object(value);
+  ReadDirection(object.Required("direction"), &light.direction);
+  object.Finish();
+  return light;
+}
+
+// What the illuminance at the reference point has to be multiplied with to give the intensity.
+double FalloffAt(const PointLight& light, const Vec3d& reference) {
+  const Vec3d d = reference - light.position;
+  const double square = d.x * d.x + d.y * d.y + d.z * d.z;
+  const Falloff& f = light.falloff;
+  return f.constant + f.linear * std::sqrt(square) + f.quadratic * square;
+}
+
+}  // namespace
+
+Light ReadLight(JsonObject* object) {
+  Light light;
+  const JsonCursor source = object->OneOf({"point", "directional"});
+  const bool is_point = source.present() && source.key() == "point";
+  if (is_point) {
+    light.source = ReadPointLight(source);
+  } else {
+    light.source = ReadDirectionalLight(source);
+  }
+  ReadColour(object->Optional("colour"), kStrength, &light.colour);
+  object->Optional("shadows").ReadBoolean(&light.casts_shadows);
+
+  const JsonCursor strength = object->OneOf({"E0", "intensity"});
+  const bool is_read = strength.Read(kIntensity, &light.intensity);
+  const JsonCursor reference = object->Optional("reference");
+  if (!source.present() || !strength.present()) return light;
+  if (!is_point || strength.key() != "E0") {
+    reference.Fail("only \"E0\" of a point light has a reference point");
+    return light;
+  }
+  if (!reference.present()) object->FailMissing("reference", "missing key; \"E0\" needs it");
+  Vec3d point{0.0};
+  if (!ReadVector(reference, &point) || !is_read) return light;
+  const double factor = FalloffAt(std::get<PointLight>(light.source), point);
+  light.intensity *= factor;
+  if (!(factor > 0.0)) {
+    reference.Fail("the reference point is the light's position, where E0 is not defined");
+  } else if (light.intensity > kIntensity.high) {
+    strength.Fail(fmt::format("the intensity would be {:.6g}, more than {}", light.intensity,
+                              kIntensity.high));
+  }
+  return light;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,16 @@
+// Reads a light from a scene file.
+#ifndef SHEAF_FORMATS_SCENE_LIGHTS_H_
+#define SHEAF_FORMATS_SCENE_LIGHTS_H_
+
+#include "src/formats/json_cursor.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+// Turns "E0", the illuminance at a reference point, into the intensity that causes it.
+// Its "name" is read by the caller, who knows the others.
+Light ReadLight(JsonObject* object);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_SCENE_LIGHTS_H_

@@ -1,0 +1,245 @@
+#include "src/render/compile_scene.h"
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+
+#include "simd/roundoffs.h"
+#include "src/core/strict_tan.h"
+#include "src/scalar/vec3.h"
+
+namespace sheaf {
+namespace {
+
+using scalar::Vec3;
+
+template <typename Real>
+void Store(const glm::dvec3& from, Real (&to)[3]) {
+  // Adding 0 turns -0 into 0, so that no sum of colours depends on where it starts.
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(from[i]) + Real(0);
+}
+
+Vec3<double> ToVec3(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+glm::dvec3 ToGlm(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
+
+// GLM's own normalize multiplies by an inverse square root, whose bits are its business.
+glm::dvec3 Unit(const glm::dvec3& v) { return ToGlm(scalar::Normalize(ToVec3(v))); }
+glm::dvec3 CrossOf(const glm::dvec3& a, const glm::dvec3& b) {
+  return ToGlm(scalar::Cross(ToVec3(a), ToVec3(b)));
+}
+double LengthOf(const glm::dvec3& v) { return std::sqrt(scalar::Dot(ToVec3(v), ToVec3(v))); }
+
+struct Bounds {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+  void Include(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+};
+
+// Fills the arrays of one CompiledScene in the order of the objects.
+template <typename Real>
+class GeometryWriter {
+ public:
+  explicit GeometryWriter(CompiledScene<Real>& compiled) : compiled_(compiled) {}
+
+  void Allocate(std::uint32_t spheres, std::uint32_t triangles) {
+    for (auto& axis : compiled_.sphere_center) axis.Allocate(StreamCapacity(spheres));
+    compiled_.sphere_radius.Allocate(StreamCapacity(spheres));
+    compiled_.sphere_id.Allocate(StreamCapacity(spheres));
+    for (auto& vertex : compiled_.triangle_vertex) {
+      for (auto& axis : vertex) axis.Allocate(StreamCapacity(triangles));
+    }
+    for (auto& vertex : compiled_.triangle_uv) {
+      for (auto& axis : vertex) axis.Allocate(StreamCapacity(triangles));
+    }
+    compiled_.triangle_id.Allocate(StreamCapacity(triangles));
+  }
+
+  void StartObject(std::uint32_t object, std::uint32_t material) {
+    object_ = object;
+    material_ = material;
+  }
+
+  void Add(const Sphere& sphere) {
+    const std::uint32_t i = compiled_.sphere_count++;
+    for (int axis = 0; axis < 3; ++axis) {
+      compiled_.sphere_center[axis][i] = static_cast<Real>(sphere.center[axis]);
+    }
+    const Real radius = static_cast<Real>(sphere.radius);
+    compiled_.sphere_radius[i] = radius > 0 ? radius : kNever;
+    compiled_.sphere_id[i] = NewId(i);
+    bounds_.Include(sphere.center - sphere.radius);
+    bounds_.Include(sphere.center + sphere.radius);
+  }
+
+  void Add(const Triangle& triangle) {
+    const std::uint32_t i = compiled_.triangle_count++;
+    Vec3<double> rounded[3];
+    for (int vertex = 0; vertex < 3; ++vertex) {
+      const auto& v = triangle.vertices[vertex];
+      rounded[vertex] = ToVec3(v).To<Real>().template To<double>();
+      bounds_.Include(v);
+      for (int axis = 0; axis < 3; ++axis) {
+        compiled_.triangle_vertex[vertex][axis][i] = static_cast<Real>(v[axis]);
+      }
+      for (int axis = 0; axis < 2; ++axis) {
+        compiled_.triangle_uv[vertex][axis][i] = static_cast<Real>(triangle.uv[vertex][axis]);
+      }
+    }
+    const auto area = scalar::Cross(rounded[1] - rounded[0], rounded[2] - rounded[0]);
+    if (!(scalar::Dot(area, area) > 0)) compiled_.triangle_vertex[0][0][i] = kNever;
+    compiled_.triangle_id[i] = NewId(i | kTriangleBit);
+  }
+
+  void Add(const Quad& quad) {
+    const auto& c = quad.corners;
+    Add(Triangle{{c[0], c[1], c[2]}, {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1)}});
+    Add(Triangle{{c[0], c[2], c[3]}, {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(0, 1)}});
+  }
+
+  const Bounds& bounds() const { return bounds_; }
+
+ private:
+  static constexpr Real kNever = std::numeric_limits<Real>::quiet_NaN();
+
+  std::uint32_t NewId(std::uint32_t local) {
+    compiled_.primitives.push_back({local, material_});
+    compiled_.object_of_primitive.push_back(object_);
+    return static_cast<std::uint32_t>(compiled_.primitives.size() - 1);
+  }
+
+  CompiledScene<Real>& compiled_;
+  Bounds bounds_;
+  std::uint32_t object_ = 0, material_ = 0;
+};
+
+template <typename Real>
+MaterialData<Real> CompileMaterial(const Material& material, const Settings& settings) {
+  MaterialData<Real> data{};
+  const Checker* checker = std::get_if<Checker>(&material.base_colour);
+  const Colour even = checker ? checker->even : std::get<Colour>(material.base_colour);
+  data.kind = checker ? BaseColour::kChecker : BaseColour::kConstant;
+  Store(even, data.even);
+  Store(checker ? checker->odd : even, data.odd);
+  for (int i = 0; i < 2; ++i) data.cells[i] = static_cast<Real>(checker ? checker->cells[i] : 1);
+  Store(material.ambient * settings.ambient.value_or(settings.background), data.ambient);
+  data.kd = static_cast<Real>(material.kd);
+  data.ks = static_cast<Real>(material.ks);
+  data.shininess = static_cast<Real>(material.shininess);
+  Store(material.reflect, data.reflect);
+  Store(material.transmit, data.transmit);
+  data.ior = static_cast<Real>(material.ior);
+  return data;
+}
+
+// The largest distance from `p` to a point of the box.
+double Reach(const Bounds& bounds, const glm::dvec3& p) {
+  return LengthOf(glm::max(glm::abs(bounds.low - p), glm::abs(bounds.high - p)));
+}
+
+template <typename Real>
+LightData<Real> CompileLight(const Light& light, const Settings& settings, const Bounds& bounds) {
+  LightData<Real> data{};
+  data.casts_shadows = light.casts_shadows;
+  Store(light.colour * (light.intensity * settings.exposure), data.rgb);
+  if (const auto* directional = std::get_if<DirectionalLight>(&light.source)) {
+    data.kind = LightKind::kDirectional;
+    Store(-Unit(directional->direction), data.vector);
+    data.falloff[0] = 1;
+    return data;
+  }
+  const auto& point = std::get<PointLight>(light.source);
+  const double diameter = LengthOf(bounds.high - bounds.low);
+  const bool is_near =
+      Reach(bounds, point.position) <= kMaxLightDiameters * diameter;  // false without objects
+  data.kind = is_near ? LightKind::kPointFromLight : LightKind::kPointFromSurface;
+  Store(point.position, data.vector);
+  data.falloff[0] = static_cast<Real>(point.falloff.constant);
+  data.falloff[1] = static_cast<Real>(point.falloff.linear);
+  data.falloff[2] = static_cast<Real>(point.falloff.quadratic);
+  return data;
+}
+
+}  // namespace
+
+template <typename Real>
+GeometryView<Real> CompiledScene<Real>::geometry() const {
+  GeometryView<Real> view{};
+  view.spheres = {sphere_count,
+                  sphere_center[0].data(),
+                  sphere_center[1].data(),
+                  sphere_center[2].data(),
+                  sphere_radius.data(),
+                  sphere_id.data()};
+  view.triangles.count = triangle_count;
+  for (int vertex = 0; vertex < 3; ++vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      view.triangles.vertex[vertex][axis] = triangle_vertex[vertex][axis].data();
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      view.triangles.uv[vertex][axis] = triangle_uv[vertex][axis].data();
+    }
+  }
+  view.triangles.id = triangle_id.data();
+  return view;
+}
+
+template <typename Real>
+CompiledScene<Real> CompileScene(const Scene& scene) {
+  CompiledScene<Real> compiled;
+  std::uint32_t spheres = 0, triangles = 0;
+  for (const Object& object : scene.objects) {
+    if (std::holds_alternative<Sphere>(object.shape)) ++spheres;
+    if (std::holds_alternative<Quad>(object.shape)) triangles += 2;
+    if (std::holds_alternative<Triangle>(object.shape)) ++triangles;
+  }
+  GeometryWriter<Real> writer(compiled);
+  writer.Allocate(spheres, triangles);
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    writer.StartObject(i, scene.objects[i].material);
+    std::visit([&](const auto& shape) { writer.Add(shape); }, scene.objects[i].shape);
+  }
+  for (const Material& material : scene.materials) {
+    compiled.materials.push_back(CompileMaterial<Real>(material, scene.settings));
+  }
+  for (const Light& light : scene.lights) {
+    compiled.lights.push_back(CompileLight<Real>(light, scene.settings, writer.bounds()));
+  }
+  Store(scene.settings.background, compiled.background);
+  return compiled;
+}
+
+template <typename Real>
+CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
+  CameraData<Real> data{};
+  const glm::dvec3 forward = Unit(camera.look_at - camera.eye);
+  const glm::dvec3 right = Unit(CrossOf(forward, camera.up));
+  const glm::dvec3 up = CrossOf(right, forward);
+  double step = 0;
+  if (const auto* perspective = std::get_if<Perspective>(&camera.projection)) {
+    step = 2 * StrictTanDegrees(perspective->fov_y / 2) / height;
+  } else {
+    data.orthographic = 1;
+    step = std::get<Orthographic>(camera.projection).height / height;
+  }
+  Store(camera.eye, data.eye);
+  Store(forward, data.forward);
+  Store(right * step, data.right);
+  Store(up * step, data.up);
+  data.half_width = static_cast<Real>(width) / 2;
+  data.half_height = static_cast<Real>(height) / 2;
+  return data;
+}
+
+template struct CompiledScene<float>;
+template struct CompiledScene<double>;
+template CompiledScene<float> CompileScene(const Scene&);
+template CompiledScene<double> CompileScene(const Scene&);
+template CameraData<float> CompileCamera(const Camera&, int, int);
+template CameraData<double> CompileCamera(const Camera&, int, int);
+
+}  // namespace sheaf

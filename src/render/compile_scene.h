@@ -1,0 +1,42 @@
+// Turns a Scene into the flat arrays that rays read.
+#ifndef SHEAF_RENDER_COMPILE_SCENE_H_
+#define SHEAF_RENDER_COMPILE_SCENE_H_
+
+#include <vector>
+
+#include "src/core/aligned_array.h"
+#include "src/core/error.h"
+#include "src/scalar/frame_view.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+// Owns what a FrameView shows, all but the camera and the samples. Primitive ids follow the order
+// of the scene's objects; a quad is two triangles.
+template <typename Real>
+struct CompiledScene {
+  AlignedArray<Real> sphere_center[3], sphere_radius;
+  AlignedArray<std::uint32_t> sphere_id;
+  AlignedArray<Real> triangle_vertex[3][3], triangle_uv[3][2];
+  AlignedArray<std::uint32_t> triangle_id;
+  std::uint32_t sphere_count = 0, triangle_count = 0;
+  std::vector<PrimitiveInfo> primitives;
+  std::vector<std::uint32_t> object_of_primitive;
+  std::vector<MaterialData<Real>> materials;
+  std::vector<LightData<Real>> lights;
+  Real background[3];
+
+  GeometryView<Real> geometry() const;
+};
+
+// Spheres of radius 0 and triangles without area are kept, as NaN, and never hit.
+template <typename Real>
+CompiledScene<Real> CompileScene(const Scene& scene);
+
+// The camera for a picture of width x height pixels.
+template <typename Real>
+CameraData<Real> CompileCamera(const Camera& camera, int width, int height);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_COMPILE_SCENE_H_

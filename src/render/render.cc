@@ -1,0 +1,187 @@
+#include "src/render/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simd/target.h"
+#include "src/core/parallel.h"
+#include "src/render/compile_scene.h"
+#include "src/render/sample_pattern.h"
+#include "src/render/tile_renderer.h"
+#include "src/scalar/render_pixel.h"
+
+namespace sheaf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// One worker of the scalar engine: what TileRenderer is to the SIMD engine.
+template <typename Real>
+class ScalarTileRenderer {
+ public:
+  ScalarTileRenderer(const FrameView<Real>& frame, Timing /*timing*/) : frame_(frame) {}
+
+  void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_);
+        float* rgb = film.pixel(x - film_x, y - film_y);
+        rgb[0] = static_cast<float>(colour.x);
+        rgb[1] = static_cast<float>(colour.y);
+        rgb[2] = static_cast<float>(colour.z);
+      }
+    }
+  }
+
+  RayCounts rays() const {
+    return {tally_.primary, tally_.shadow, tally_.reflected, tally_.refracted,
+            tally_.beyond_depth};
+  }
+  double phase_seconds(Phase /*phase*/) const { return 0; }
+
+ private:
+  const FrameView<Real>& frame_;
+  scalar::PixelScratch<Real> scratch_;
+  scalar::RayTally tally_;
+};
+
+// Hands the tiles of `area` to workers until all are done or a stop is asked for.
+template <typename Renderer, typename Real>
+bool RenderTiles(const FrameView<Real>& frame, const PixelRect& area, const RenderOptions& options,
+                 Film& film, RenderStats& stats, RenderProgress& progress) {
+  const int size = options.tile_size;
+  const std::uint32_t columns = static_cast<std::uint32_t>((area.width() + size - 1) / size);
+  const std::uint32_t rows = static_cast<std::uint32_t>((area.height() + size - 1) / size);
+  const int threads = static_cast<int>(std::min<std::uint32_t>(
+      static_cast<std::uint32_t>(ThreadCount(options.threads)), columns * rows));
+  std::vector<std::unique_ptr<Renderer>> workers(static_cast<std::size_t>(threads));
+  for (auto& worker : workers) worker = std::make_unique<Renderer>(frame, options.timing);
+
+  ParallelFor(threads, columns * rows, [&](int worker, std::uint32_t item) {
+    if (progress.stop.load(std::memory_order_relaxed)) return;
+    PixelRect tile;
+    tile.x0 = area.x0 + static_cast<int>(item % columns) * size;
+    tile.y0 = area.y0 + static_cast<int>(item / columns) * size;
+    tile.x1 = std::min(tile.x0 + size, area.x1);
+    tile.y1 = std::min(tile.y0 + size, area.y1);
+    workers[static_cast<std::size_t>(worker)]->Render(tile, area.x0, area.y0, film);
+    progress.pixels_done.fetch_add(
+        static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()),
+        std::memory_order_relaxed);
+  });
+
+  for (const auto& worker : workers) {
+    stats.rays += worker->rays();
+    for (int phase = 0; phase < static_cast<int>(Phase::kCount); ++phase) {
+      stats.phase_seconds[phase] += worker->phase_seconds(static_cast<Phase>(phase));
+    }
+  }
+  stats.threads = threads;
+  return !progress.stop.load(std::memory_order_relaxed);
+}
+
+template <typename Real>
+Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect& area,
+                      const RenderOptions& options, RenderStats& stats, RenderProgress& progress) {
+  Clock::time_point start = Clock::now();
+  const CompiledScene<Real> compiled = CompileScene<Real>(scene);
+  std::vector<Real> sample_x, sample_y;
+  for (const glm::dvec2& point : SamplePattern(options.samples)) {
+    sample_x.push_back(static_cast<Real>(point.x));
+    sample_y.push_back(static_cast<Real>(point.y));
+  }
+  FrameView<Real> frame{compiled.geometry(),
+                        compiled.primitives,
+                        compiled.materials,
+                        compiled.lights,
+                        sample_x,
+                        sample_y,
+                        CompileCamera<Real>(camera, options.width, options.height),
+                        {compiled.background[0], compiled.background[1], compiled.background[2]},
+                        options.max_depth};
+  stats.compile_seconds = SecondsSince(start);
+  stats.spheres = compiled.sphere_count;
+  stats.triangles = compiled.triangle_count;
+  stats.primitives = compiled.sphere_count + compiled.triangle_count;
+  stats.target = options.engine == Engine::kScalar ? "scalar" : simd::RunningTarget();
+
+  start = Clock::now();
+  Film film(area.width(), area.height());
+  const bool finished =
+      options.engine == Engine::kScalar
+          ? RenderTiles<ScalarTileRenderer<Real>>(frame, area, options, film, stats, progress)
+          : RenderTiles<TileRenderer<Real>>(frame, area, options, film, stats, progress);
+  stats.wall_seconds = SecondsSince(start);
+  if (!finished) return Error{ErrorKind::kInterrupted, "rendering was interrupted"};
+  return film;
+}
+
+// What is wrong with the options, or nothing.
+std::string Complaint(const RenderOptions& options) {
+  const auto out_of_range = [](const char* what, int low, int high) {
+    return std::string(what) + " must lie in [" + std::to_string(low) + ", " +
+           std::to_string(high) + "]";
+  };
+  const auto within = [](int value, int low, int high) { return low <= value && value <= high; };
+  if (!within(options.width, 1, kMaxImageSide)) return out_of_range("width", 1, kMaxImageSide);
+  if (!within(options.height, 1, kMaxImageSide)) return out_of_range("height", 1, kMaxImageSide);
+  if (!within(options.samples, 1, kMaxSamples)) return out_of_range("samples", 1, kMaxSamples);
+  if (!within(options.tile_size, 1, kMaxTileSize))
+    return out_of_range("tile size", 1, kMaxTileSize);
+  if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
+  if (options.max_depth < 0) return "max depth must not be negative";
+  if (options.crop) {
+    const PixelRect& crop = *options.crop;
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > options.width || crop.y1 > options.height ||
+        crop.width() <= 0 || crop.height() <= 0) {
+      return "crop must be a non-empty rectangle inside the picture";
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* PhaseName(Phase phase) {
+  static constexpr const char* kNames[] = {"generate", "trace",  "bin",   "surface",
+                                           "shade",    "shadow", "spawn", "accumulate"};
+  return kNames[static_cast<int>(phase)];
+}
+
+RayCounts& RayCounts::operator+=(const RayCounts& other) {
+  primary += other.primary;
+  shadow += other.shadow;
+  reflected += other.reflected;
+  refracted += other.refracted;
+  beyond_depth += other.beyond_depth;
+  return *this;
+}
+
+Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                    RenderStats* stats, RenderProgress* progress) {
+  if (const std::string complaint = Complaint(options); !complaint.empty()) {
+    return Error{ErrorKind::kUsage, complaint};
+  }
+  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+  RenderStats ignored_stats;
+  RenderProgress ignored_progress;
+  RenderStats& kept_stats = stats ? *stats : ignored_stats;
+  RenderProgress& kept_progress = progress ? *progress : ignored_progress;
+  kept_stats = {};
+  switch (options.precision) {
+    case Precision::kDouble:
+      return RenderIn<double>(scene, camera, area, options, kept_stats, kept_progress);
+    case Precision::kStrict:
+      break;
+  }
+  return RenderIn<float>(scene, camera, area, options, kept_stats, kept_progress);
+}
+
+}  // namespace sheaf

@@ -1,0 +1,92 @@
+// Renders a scene through one camera: the entry point of the renderer.
+#ifndef SHEAF_RENDER_RENDER_H_
+#define SHEAF_RENDER_RENDER_H_
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "src/core/error.h"
+#include "src/scene/film.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+// What a picture is computed in; see docs/numerics.md.
+enum class Precision {
+  kStrict,  // float, correctly rounded, never fused: the same bits everywhere
+  kDouble,  // the same renderer on double lanes
+};
+
+enum class Engine {
+  kScalar,  // src/scalar, one ray at a time
+  kSimd,    // simd/, on the SIMD target that simd/target.h has chosen
+};
+
+enum class Timing { kOff, kOn };
+
+inline constexpr int kMaxSamples = 65536;
+inline constexpr int kMaxTileSize = 256;
+inline constexpr int kMaxThreads = 1024;
+
+struct RenderOptions {
+  int width = 640, height = 480;  // of the whole picture, [1, kMaxImageSide]
+  int samples = 1;                // a pixel, >= 1
+  int max_depth = 5;              // >= 0
+  std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
+  Engine engine = Engine::kSimd;
+  Precision precision = Precision::kStrict;
+  int threads = 0;     // 0: one a core
+  int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
+  Timing timing = Timing::kOff;  // whether RenderStats::seconds is filled
+};
+
+enum class Phase {
+  kGenerate,
+  kTrace,
+  kBin,
+  kSurface,
+  kShade,
+  kShadow,
+  kSpawn,
+  kAccumulate,
+  kCount
+};
+const char* PhaseName(Phase phase);  // lower case, e.g. "trace"
+
+// Reflected and refracted rays are counted where they are spawned. Of these, `beyond_depth` are deeper than
+// the limit: black, and not traced.
+struct RayCounts {
+  std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
+  std::uint64_t beyond_depth = 0;
+  std::uint64_t traced() const { return primary + shadow + reflected + refracted - beyond_depth; }
+  RayCounts& operator+=(const RayCounts& other);
+};
+
+struct RenderStats {
+  RayCounts rays;
+  double wall_seconds = 0.0;     // of the frame, without scene compilation
+  double compile_seconds = 0.0;  // Scene to flat arrays
+  double phase_seconds[static_cast<int>(Phase::kCount)] =
+      {};              // summed over threads; SIMD engine only
+  int threads = 0;     // that took part
+  std::string target;  // what ran: "scalar" or a SIMD target's name
+  std::uint32_t primitives = 0, spheres = 0, triangles = 0;
+};
+
+// Shared with other threads while a frame renders: read the progress, ask for a stop.
+struct RenderProgress {
+  std::atomic<std::uint64_t> pixels_done{0};
+  std::atomic<bool> stop{false};
+};
+
+// Renders `camera` (one of the scene's or any other). `stats` and `progress` may be null. Fails
+// with kUsage where an option is out of range, kInterrupted where progress->stop was set; no film
+// then.
+Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                    RenderStats* stats = nullptr, RenderProgress* progress = nullptr);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_RENDER_H_

@@ -1,0 +1,17 @@
+// Where in a pixel its samples lie.
+#ifndef SHEAF_RENDER_SAMPLE_PATTERN_H_
+#define SHEAF_RENDER_SAMPLE_PATTERN_H_
+
+#include <glm/vec2.hpp>
+#include <vector>
+
+namespace sheaf {
+
+// `count` points in [0, 1)^2, the same for every pixel: Hammersley's set, point i at
+// ((i + 1/2) / count, radical inverse of i in base 2, moved to the middle of its 1/2^k cell); one
+// sample lies at the centre. Correctly rounded divisions alone, so the same bits everywhere.
+std::vector<glm::dvec2> SamplePattern(int count);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_SAMPLE_PATTERN_H_

@@ -1,0 +1,277 @@
+#include "src/render/tile_renderer.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "simd/face_light.h"
+#include "simd/generate_primary.h"
+#include "simd/generate_shadow.h"
+#include "simd/shade_ambient.h"
+#include "simd/shade_light.h"
+#include "simd/spawn_rays.h"
+#include "simd/sphere_surface.h"
+#include "simd/trace_closest.h"
+#include "simd/trace_occluded.h"
+#include "simd/triangle_surface.h"
+#include "src/scalar/spawn.h"
+
+namespace sheaf {
+namespace {
+
+// Every second bit of a Morton code, from bit 0.
+std::uint32_t EvenBits(std::uint32_t code) {
+  std::uint32_t value = 0;
+  for (int bit = 0; bit < 16; ++bit) value |= (code >> bit) & (1u << bit);
+  return value;
+}
+
+}  // namespace
+
+// ---- The schedule
+// ---------------------------------------------------------------------------------
+
+template <typename Real>
+void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
+  OrderPixels(tile);
+  auto pixels = pixels_.output();
+  ForEachField(pixels, [&](Real* channel) { std::fill_n(channel, pixel_count_, Real(0)); });
+  const std::size_t samples = frame_.sample_x.size();
+  for (std::size_t i = 0; i < samples; ++i) {
+    RenderSample(frame_.sample_x[i], frame_.sample_y[i]);
+    auto sample = sample_.view();
+    ForEachField(pixels, sample, [&](Real* sum, const Real* channel) {
+      for (std::uint32_t pixel = 0; pixel < pixel_count_; ++pixel) sum[pixel] += channel[pixel];
+    });
+  }
+  for (std::uint32_t i = 0; i < pixel_count_; ++i) {
+    float* rgb =
+        film.pixel(static_cast<int>(pixel_x_[i]) - film_x, static_cast<int>(pixel_y_[i]) - film_y);
+    rgb[0] = static_cast<float>(pixels.r[i] / static_cast<Real>(samples));
+    rgb[1] = static_cast<float>(pixels.g[i] / static_cast<Real>(samples));
+    rgb[2] = static_cast<float>(pixels.b[i] / static_cast<Real>(samples));
+  }
+  Charge(Phase::kAccumulate);
+}
+
+template <typename Real>
+void TileRenderer<Real>::RenderSample(Real sample_x, Real sample_y) {
+  StartClock();
+  Generate(sample_x, sample_y);
+  next_reflected_.Reset(primary_.count);
+  next_refracted_.Reset(primary_.count);
+  TraceAndShade(primary_, 0);
+  for (int depth = 1; next_reflected_.count + next_refracted_.count > 0; ++depth) {
+    std::swap(reflected_, next_reflected_);
+    std::swap(refracted_, next_refracted_);
+    rays_.reflected += reflected_.count;
+    rays_.refracted += refracted_.count;
+    if (depth > frame_.max_depth) {  // these count, and are black
+      rays_.beyond_depth += reflected_.count + refracted_.count;
+      break;
+    }
+    next_reflected_.Reset(reflected_.count + refracted_.count);
+    next_refracted_.Reset(reflected_.count + refracted_.count);
+    TraceAndShade(reflected_, depth);
+    TraceAndShade(refracted_, depth);
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth) {
+  if (bundle.count == 0) return;
+  Reserve(bundle.count);
+  const std::uint32_t first_reflected = next_reflected_.count;
+  const std::uint32_t first_refracted = next_refracted_.count;
+  reflecting_bins_ = refracting_bins_ = 0;
+
+  auto rays = bundle.rays.view();
+  if (depth == 0) rays.source = nullptr;
+  simd::TraceClosest(frame_.geometry, rays, {}, bundle.count, hits_.output());
+  Charge(Phase::kTrace);
+  binner_.Bin(hits_.view().primitive, bundle.count, frame_.primitives);
+  Charge(Phase::kBin);
+
+  // Primary rays stand for their pixels, with a weight of 1.
+  auto colours = depth == 0 ? sample_.output() : ray_colours_.output();
+  for (const std::uint32_t ray : binner_.missed_rays()) {
+    colours.r[ray] = frame_.background[0];
+    colours.g[ray] = frame_.background[1];
+    colours.b[ray] = frame_.background[2];
+  }
+  for (const HitBin& bin : binner_.bins()) ShadeBin(bundle, bin, depth);
+  FinishSpawn(bundle, next_reflected_, first_reflected, depth, reflecting_bins_);
+  FinishSpawn(bundle, next_refracted_, first_refracted, depth, refracting_bins_);
+  if (depth > 0) Accumulate(bundle);
+}
+
+template <typename Real>
+void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth) {
+  const MaterialData<Real>& material = frame_.materials[bin.material];
+  auto rays = bundle.rays.view();
+  if (bin.shape == ShapeKind::kSphere) {
+    simd::SphereSurfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch,
+                         surfaces_.output());
+  } else {
+    simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch,
+                           surfaces_.output());
+  }
+  Charge(Phase::kSurface);
+
+  simd::ShadeAmbient(material, surfaces_.view(), bin.batch.count, surface_colours_.output());
+  Charge(Phase::kShade);
+  if (scalar::ReactsToLight(material)) ShadeLights(material, bin.batch.count);
+
+  auto colours = depth == 0 ? sample_.output() : ray_colours_.output();
+  const auto shaded = surface_colours_.view();
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
+    const std::uint32_t ray = bin.batch.ray[i];
+    colours.r[ray] = shaded.r[i];
+    colours.g[ray] = shaded.g[i];
+    colours.b[ray] = shaded.b[i];
+  }
+  Charge(Phase::kAccumulate);
+  if (scalar::SpawnsRays(material)) Spawn(bundle, material, bin.batch.count, depth);
+}
+
+// Light by light, so that the shadow rays of a batch share their origin.
+template <typename Real>
+void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material, std::uint32_t count) {
+  for (const LightData<Real>& light : frame_.lights) {
+    const std::uint32_t facing =
+        simd::FaceLight(light, material, surfaces_.view(), count, lit_.data());
+    Charge(Phase::kShade);
+    if (facing == 0) continue;
+    if (light.casts_shadows) FindShadows(light, count);
+    simd::ShadeLight(light, material, surfaces_.view(), lit_.data(), count,
+                     surface_colours_.output());
+    Charge(Phase::kShade);
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t count) {
+  const std::uint32_t size = simd::GenerateShadow(light, surfaces_.view(), lit_.data(), count,
+                                                  shadow_rays_.output(), surface_of_ray_.data());
+  rays_.shadow += size;
+  RayIntervals<Real> intervals;
+  if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
+  simd::TraceOccluded(frame_.geometry, shadow_rays_.view(), intervals, size, occluded_.data());
+  for (std::uint32_t i = 0; i < size; ++i) lit_[surface_of_ray_[i]] = 1 - occluded_[i];
+  Charge(Phase::kShadow);
+}
+
+template <typename Real>
+void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material,
+                               std::uint32_t count, int depth) {
+  auto parents = bundle.paths.view();
+  if (depth == 0) parents.weight_r = parents.weight_g = parents.weight_b = nullptr;
+  const simd::SpawnCounts spawned =
+      simd::SpawnRays(material, surfaces_.view(), count, parents,
+                      next_reflected_.rays.output(next_reflected_.count),
+                      next_reflected_.paths.output(next_reflected_.count),
+                      next_refracted_.rays.output(next_refracted_.count),
+                      next_refracted_.paths.output(next_refracted_.count));
+  next_reflected_.count += spawned.reflected;
+  next_refracted_.count += spawned.refracted;
+  reflecting_bins_ += spawned.reflected > 0;
+  refracting_bins_ += spawned.refracted > 0;
+  Charge(Phase::kSpawn);
+}
+
+// One bin leaves its children in the order of their parents; several have to be merged into it.
+template <typename Real>
+void TileRenderer<Real>::FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children,
+                                     std::uint32_t first, int depth, int spawning_bins) {
+  if (children.count == first) return;
+  if (spawning_bins > 1) OrderByParent(children, first, bundle.count);
+  const std::uint32_t* parent_pixel = bundle.paths.view().pixel;
+  const auto paths = children.paths.output(first);
+  for (std::uint32_t i = 0; i < children.count - first; ++i) {
+    paths.pixel[i] = depth == 0 ? paths.parent[i] : parent_pixel[paths.parent[i]];
+  }
+  Charge(Phase::kSpawn);
+}
+
+// Ray by ray, because several may belong to one pixel, and in their order, which is part of the
+// result.
+template <typename Real>
+void TileRenderer<Real>::Accumulate(const RayBundle<Real>& bundle) {
+  const auto paths = bundle.paths.view();
+  const auto colours = ray_colours_.view();
+  const auto sample = sample_.output();
+  for (std::uint32_t i = 0; i < bundle.count; ++i) {
+    const std::uint32_t pixel = paths.pixel[i];
+    sample.r[pixel] += paths.weight_r[i] * colours.r[i];
+    sample.g[pixel] += paths.weight_g[i] * colours.g[i];
+    sample.b[pixel] += paths.weight_b[i] * colours.b[i];
+  }
+  Charge(Phase::kAccumulate);
+}
+
+// ---- Primary rays and buffers
+// ----------------------------------------------------------------------
+
+// In Morton order, so that any power of two of consecutive rays is a square or half of one.
+template <typename Real>
+void TileRenderer<Real>::OrderPixels(const PixelRect& tile) {
+  const std::uint32_t size = static_cast<std::uint32_t>(tile.width() * tile.height());
+  if (pixel_x_.size() < StreamCapacity(size)) {
+    pixel_x_.Allocate(StreamCapacity(size));
+    pixel_y_.Allocate(StreamCapacity(size));
+    sample_.Allocate(size);
+    pixels_.Allocate(size);
+  }
+  const auto side =
+      std::bit_ceil(static_cast<std::uint32_t>(std::max(tile.width(), tile.height())));
+  pixel_count_ = 0;
+  for (std::uint32_t code = 0; code < side * side; ++code) {
+    const int x = static_cast<int>(EvenBits(code)), y = static_cast<int>(EvenBits(code >> 1));
+    if (x >= tile.width() || y >= tile.height()) continue;
+    pixel_x_[pixel_count_] = static_cast<Real>(tile.x0 + x);
+    pixel_y_[pixel_count_] = static_cast<Real>(tile.y0 + y);
+    ++pixel_count_;
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::Generate(Real sample_x, Real sample_y) {
+  primary_.Reset(pixel_count_);
+  primary_.count = pixel_count_;
+  simd::GeneratePrimary(frame_.camera, pixel_x_.data(), pixel_y_.data(), sample_x, sample_y,
+                        pixel_count_, primary_.rays.output());
+  rays_.primary += pixel_count_;
+  Charge(Phase::kGenerate);
+}
+
+template <typename Real>
+void TileRenderer<Real>::Reserve(std::uint32_t count) {
+  if (count <= reserved_) return;
+  reserved_ = std::max(count, 2 * reserved_);
+  hits_.Allocate(reserved_);
+  surfaces_.Allocate(reserved_);
+  ray_colours_.Allocate(reserved_);
+  surface_colours_.Allocate(reserved_);
+  shadow_rays_.Allocate(reserved_);
+  lit_.Allocate(StreamCapacity(reserved_));
+  surface_of_ray_.Allocate(StreamCapacity(reserved_));
+  occluded_.Allocate(StreamCapacity(reserved_));
+}
+
+template <typename Real>
+void TileRenderer<Real>::StartClock() {
+  if (timing_ == Timing::kOn) clock_ = Clock::now();
+}
+
+// Everything since the last call counts for `phase`.
+template <typename Real>
+void TileRenderer<Real>::Charge(Phase phase) {
+  if (timing_ == Timing::kOff) return;
+  const Clock::time_point now = Clock::now();
+  seconds_[static_cast<int>(phase)] += std::chrono::duration<double>(now - clock_).count();
+  clock_ = now;
+}
+
+template class TileRenderer<float>;
+template class TileRenderer<double>;
+
+}  // namespace sheaf

@@ -1,0 +1,76 @@
+// Renders one tile at a time, breadth first: the schedule of a frame.
+#ifndef SHEAF_RENDER_TILE_RENDERER_H_
+#define SHEAF_RENDER_TILE_RENDERER_H_
+
+#include <chrono>
+#include <vector>
+
+#include "src/render/bin_hits.h"
+#include "src/render/ray_bundle.h"
+#include "src/render/render.h"
+#include "src/scalar/frame_view.h"
+#include "src/stream/stream.h"
+
+namespace sheaf {
+
+// One worker's buffers and statistics. `frame` outlives it.
+template <typename Real>
+class TileRenderer {
+ public:
+  TileRenderer(const FrameView<Real>& frame, Timing timing)
+      : frame_(frame), binner_(frame.materials.size()), timing_(timing) {}
+
+  // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
+  // (film_x, film_y).
+  void Render(const PixelRect& tile, int film_x, int film_y, Film& film);
+
+  const RayCounts& rays() const { return rays_; }
+  double phase_seconds(Phase phase) const { return seconds_[static_cast<int>(phase)]; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void OrderPixels(const PixelRect& tile);
+  void RenderSample(Real sample_x, Real sample_y);
+  void Generate(Real sample_x, Real sample_y);
+  void TraceAndShade(const RayBundle<Real>& bundle, int depth);
+  void ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth);
+  void ShadeLights(const MaterialData<Real>& material, std::uint32_t count);
+  void FindShadows(const LightData<Real>& light, std::uint32_t count);
+  void Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material, std::uint32_t count,
+             int depth);
+  void FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children, std::uint32_t first,
+                   int depth, int spawning_bins);
+  void Accumulate(const RayBundle<Real>& bundle);
+  void Reserve(std::uint32_t count);
+  void StartClock();
+  void Charge(Phase phase);
+
+  const FrameView<Real>& frame_;
+  HitBinner binner_;
+  Timing timing_;
+  RayCounts rays_;
+  double seconds_[static_cast<int>(Phase::kCount)] = {};
+  Clock::time_point clock_;
+
+  std::uint32_t pixel_count_ = 0;
+  PixelRect ordered_;  // the tile that pixel_x_ and pixel_y_ are for
+  AlignedArray<Real> pixel_x_, pixel_y_;
+  ColourStream<Real> sample_, pixels_;  // by pixel of the tile
+
+  RayBundle<Real> primary_;
+  // The rays of this depth and of the next; reflected before refracted wherever their order counts.
+  RayBundle<Real> reflected_, refracted_, next_reflected_, next_refracted_;
+  int reflecting_bins_ = 0, refracting_bins_ = 0;
+
+  std::uint32_t reserved_ = 0;  // rays that the streams below have room for
+  HitStream<Real> hits_;
+  SurfaceStream<Real> surfaces_;
+  ColourStream<Real> ray_colours_, surface_colours_;
+  RayStream<Real> shadow_rays_;
+  AlignedArray<std::uint32_t> lit_, surface_of_ray_, occluded_;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_TILE_RENDERER_H_

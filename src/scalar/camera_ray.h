@@ -1,0 +1,23 @@
+// The primary ray of one sample of one pixel.
+#ifndef SHEAF_SCALAR_CAMERA_RAY_H_
+#define SHEAF_SCALAR_CAMERA_RAY_H_
+
+#include "src/scalar/ray.h"
+
+namespace sheaf::scalar {
+
+// Pixel (x, y), counted from the top left, at the point (sx, sy) in [0, 1)^2 of it.
+template <typename Real>
+Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Real sy) {
+  const Vec3<Real> eye = FromArray(camera.eye), forward = FromArray(camera.forward);
+  // Counted from the picture's centre, where half pixels are exact.
+  const Real a = (x + sx) - camera.half_width;
+  const Real b = camera.half_height - (y + sy);
+  const Vec3<Real> across = FromArray(camera.right) * a + FromArray(camera.up) * b;
+  if (camera.orthographic) return {eye + across, forward};
+  return {eye, Normalize(forward + across)};
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_CAMERA_RAY_H_

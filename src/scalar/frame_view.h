@@ -1,0 +1,33 @@
+// Everything that the rays of one frame read, as plain views: what scene compilation leaves.
+#ifndef SHEAF_SCALAR_FRAME_VIEW_H_
+#define SHEAF_SCALAR_FRAME_VIEW_H_
+
+#include <span>
+
+#include "simd/layout.h"
+
+namespace sheaf {
+
+// Set in PrimitiveInfo::local where the primitive is a triangle.
+inline constexpr std::uint32_t kTriangleBit = 0x80000000u;
+
+struct PrimitiveInfo {
+  std::uint32_t local;     // index into the spheres or the triangles, with kTriangleBit
+  std::uint32_t material;  // index into the materials
+};
+
+template <typename Real>
+struct FrameView {
+  GeometryView<Real> geometry;
+  std::span<const PrimitiveInfo> primitives;  // by primitive id
+  std::span<const MaterialData<Real>> materials;
+  std::span<const LightData<Real>> lights;
+  std::span<const Real> sample_x, sample_y;  // in [0, 1), one an element of the sample pattern
+  CameraData<Real> camera;
+  Real background[3];
+  int max_depth;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SCALAR_FRAME_VIEW_H_

@@ -1,0 +1,43 @@
+// A ray and which rays can hit anything at all.
+#ifndef SHEAF_SCALAR_RAY_H_
+#define SHEAF_SCALAR_RAY_H_
+
+#include <cstdint>
+
+#include "simd/layout.h"
+#include "src/scalar/vec3.h"
+
+namespace sheaf::scalar {
+
+template <typename Real>
+struct Ray {
+  Vec3<Real> origin;
+  Vec3<Real> direction;                 // any length; t counts in lengths of it
+  std::uint32_t source = kNoPrimitive;  // see layout.h
+  Real t_min = kDefaultTMin<Real>;
+  Real t_max = kDefaultTMax<Real>;
+};
+
+// An infinite t_max admits every finite t. Stays NaN for NaN.
+template <typename Real>
+Real FiniteTMax(Real t_max) {
+  return t_max > kDefaultTMax<Real> ? kDefaultTMax<Real> : t_max;
+}
+
+template <typename Real>
+bool IsFinite(Vec3<Real> a) {
+  // x - x is 0 for finite x and NaN otherwise.
+  return a.x - a.x == 0 && a.y - a.y == 0 && a.z - a.z == 0;
+}
+
+// A ray with a component that is not finite, without a direction or with an empty interval misses
+// everything. t_min <= t_max is false for NaN.
+template <typename Real>
+bool IsTraceable(const Ray<Real>& ray) {
+  const bool has_direction = ray.direction.x != 0 || ray.direction.y != 0 || ray.direction.z != 0;
+  return IsFinite(ray.origin) && IsFinite(ray.direction) && has_direction && ray.t_min <= ray.t_max;
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_RAY_H_

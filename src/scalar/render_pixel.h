@@ -1,0 +1,118 @@
+// One pixel, one ray at a time: the specification of a whole frame.
+//
+// Whitted, "An Improved Illumination Model for Shaded Display" (CACM 1980), breadth first: a
+// depth's rays are shaded in order, then all their reflections, then all their refractions make the
+// next depth. Each ray's colour, times its weight, is added to the sample in that order; simd/ and
+// src/render keep to it.
+#ifndef SHEAF_SCALAR_RENDER_PIXEL_H_
+#define SHEAF_SCALAR_RENDER_PIXEL_H_
+
+#include <vector>
+
+#include "src/scalar/camera_ray.h"
+#include "src/scalar/frame_view.h"
+#include "src/scalar/shadow_ray.h"
+#include "src/scalar/spawn.h"
+
+namespace sheaf::scalar {
+
+struct RayTally {
+  std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
+  std::uint64_t beyond_depth = 0;  // of the reflected and refracted ones, not traced
+};
+
+// One depth's rays and the next one's, kept to spare allocations.
+template <typename Real>
+struct PixelScratch {
+  std::vector<Path<Real>> paths, reflected, refracted;
+};
+
+template <typename Real>
+Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
+                      const Surface<Real>& surface, RayTally& tally) {
+  const Vec3<Real> base = BaseColourAt(material, surface);
+  Vec3<Real> colour = AmbientLight(material, base);
+  if (!ReactsToLight(material)) return colour;
+  for (const LightData<Real>& light : frame.lights) {
+    const Incidence<Real> incidence = IncidenceOf(light, surface);
+    if (!(incidence.n_dot_l > 0)) continue;
+    if (light.casts_shadows) {
+      ++tally.shadow;
+      if (TraceOccluded(frame.geometry, ShadowRay(light, surface, incidence))) continue;
+    }
+    colour = colour + LitBy(light, material, surface, base, incidence);
+  }
+  return colour;
+}
+
+template <typename Real>
+Surface<Real> SurfaceOf(const FrameView<Real>& frame, const Ray<Real>& ray, const Hit<Real>& hit) {
+  const std::uint32_t local = frame.primitives[hit.primitive].local;
+  if (local & kTriangleBit) {
+    return TriangleSurface(ray, hit, frame.geometry.triangles, local & ~kTriangleBit);
+  }
+  return SphereSurface(ray, hit, frame.geometry.spheres, local);
+}
+
+// Adds `colour`, seen with `weight`, to `sum`.
+template <typename Real>
+void Accumulate(Vec3<Real>& sum, const Real (&weight)[3], Vec3<Real> colour) {
+  sum = sum + Vec3<Real>{weight[0] * colour.x, weight[1] * colour.y, weight[2] * colour.z};
+}
+
+// The colour of one sample: breadth first from its primary ray, which has depth 0.
+template <typename Real>
+Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
+                        PixelScratch<Real>& scratch, RayTally& tally) {
+  Vec3<Real> sum = {0, 0, 0};
+  scratch.paths.assign(1, {primary, {1, 1, 1}});
+  ++tally.primary;
+  for (int depth = 0; !scratch.paths.empty(); ++depth) {
+    scratch.reflected.clear();
+    scratch.refracted.clear();
+    for (const Path<Real>& path : scratch.paths) {
+      const Hit<Real> hit = TraceClosest(frame.geometry, path.ray);
+      if (hit.primitive == kNoPrimitive) {
+        Accumulate(sum, path.weight, FromArray(frame.background));
+        continue;
+      }
+      const MaterialData<Real>& material =
+          frame.materials[frame.primitives[hit.primitive].material];
+      const Surface<Real> surface = SurfaceOf(frame, path.ray, hit);
+      if (HasLocalLight(material, surface)) {
+        Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
+      }
+      if (!SpawnsRays(material)) continue;
+      const Spawned<Real> spawned = Spawn(material, surface, path.weight);
+      if (spawned.reflected.exists()) scratch.reflected.push_back(spawned.reflected);
+      if (spawned.refracted.exists()) scratch.refracted.push_back(spawned.refracted);
+    }
+    tally.reflected += scratch.reflected.size();
+    tally.refracted += scratch.refracted.size();
+    if (depth == frame.max_depth) {  // what is deeper counts, and is black
+      tally.beyond_depth += scratch.reflected.size() + scratch.refracted.size();
+      break;
+    }
+    scratch.paths.swap(scratch.reflected);
+    scratch.paths.insert(scratch.paths.end(), scratch.refracted.begin(), scratch.refracted.end());
+  }
+  return sum;
+}
+
+// The mean of the pixel's samples, added up in the order of the pattern.
+template <typename Real>
+Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<Real>& scratch,
+                       RayTally& tally) {
+  Vec3<Real> sum = {0, 0, 0};
+  const std::size_t samples = frame.sample_x.size();
+  for (std::size_t i = 0; i < samples; ++i) {
+    const Ray<Real> primary = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
+                                        frame.sample_x[i], frame.sample_y[i]);
+    sum = sum + RenderSample(frame, primary, scratch, tally);
+  }
+  return sum / static_cast<Real>(samples);
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_RENDER_PIXEL_H_

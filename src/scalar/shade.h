@@ -1,0 +1,93 @@
+// The light that a surface itself sends to the eye: ambient, diffuse, half-vector highlight.
+#ifndef SHEAF_SCALAR_SHADE_H_
+#define SHEAF_SCALAR_SHADE_H_
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/scalar/pow.h"
+#include "src/scalar/surface.h"
+
+namespace sheaf::scalar {
+
+template <typename Real>
+bool AnyPositive(const Real (&c)[3]) {
+  return c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
+// A transparent body has no light of its own inside.
+template <typename Real>
+bool HasLocalLight(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  return !(surface.inside() && AnyPositive(material.transmit));
+}
+
+template <typename Real>
+bool ReactsToLight(const MaterialData<Real>& material) {
+  return material.kd > 0 || material.ks > 0;
+}
+
+// A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.
+template <typename Real>
+Vec3<Real> BaseColourAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  if (material.kind == BaseColour::kConstant) return FromArray(material.even);
+  const Real cell =
+      std::floor(surface.u * material.cells[0]) + std::floor(surface.v * material.cells[1]);
+  const bool odd = cell != 2 * std::floor(cell / 2);
+  return FromArray(odd ? material.odd : material.even);
+}
+
+template <typename Real>
+Vec3<Real> AmbientLight(const MaterialData<Real>& material, Vec3<Real> base) {
+  return {material.ambient[0] * base.x, material.ambient[1] * base.y, material.ambient[2] * base.z};
+}
+
+// A light as the surface sees it.
+template <typename Real>
+struct Incidence {
+  Vec3<Real> to_light;  // from the surface to the light's position; a directional light's vector
+  Vec3<Real> l;         // unit
+  Real n_dot_l;         // NaN where the light lies on the point: then it gives nothing
+  Real attenuation;     // 1 / (kc + kl r + kq r^2)
+};
+
+template <typename Real>
+Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& surface) {
+  Incidence<Real> incidence;
+  Real squared = 0, distance = 0;
+  incidence.to_light = FromArray(light.vector);
+  incidence.l = incidence.to_light;
+  if (light.kind != LightKind::kDirectional) {
+    incidence.to_light = incidence.to_light - surface.position;
+    squared = Dot(incidence.to_light, incidence.to_light);
+    distance = std::sqrt(squared);
+    incidence.l = incidence.to_light / distance;
+  }
+  incidence.n_dot_l = Dot(surface.normal, incidence.l);
+  incidence.attenuation =
+      1 / ((light.falloff[0] + light.falloff[1] * distance) + light.falloff[2] * squared);
+  return incidence;
+}
+
+// What one unoccluded light adds, n_dot_l > 0. The highlight has the light's colour; there is no
+// 1/pi.
+template <typename Real>
+Vec3<Real> LitBy(const LightData<Real>& light, const MaterialData<Real>& material,
+                 const Surface<Real>& surface, Vec3<Real> base, const Incidence<Real>& incidence) {
+  const Real diffuse = material.kd * incidence.n_dot_l;
+  Real highlight = 0;
+  if (material.ks > 0) {
+    const Vec3<Real> h = Normalize(incidence.l - surface.direction);
+    const Real n_dot_h = Dot(surface.normal, h);
+    // Rounding can carry it past 1; NaN, from an h of length 0, counts as 0.
+    const Real clamped = n_dot_h > 0 ? (n_dot_h < 1 ? n_dot_h : Real(1)) : Real(0);
+    highlight = material.ks * Pow(clamped, material.shininess);
+  }
+  const auto channel = [&](int i, Real base_colour) {
+    return (light.rgb[i] * incidence.attenuation) * (base_colour * diffuse + highlight);
+  };
+  return {channel(0, base.x), channel(1, base.y), channel(2, base.z)};
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_SHADE_H_

@@ -1,0 +1,29 @@
+// The ray that asks whether a light reaches a surface.
+#ifndef SHEAF_SCALAR_SHADOW_RAY_H_
+#define SHEAF_SCALAR_SHADOW_RAY_H_
+
+#include "src/scalar/shade.h"
+
+namespace sheaf::scalar {
+
+template <typename Real>
+Ray<Real> ShadowRay(const LightData<Real>& light, const Surface<Real>& surface,
+                    const Incidence<Real>& incidence) {
+  const Vec3<Real> to_light = incidence.to_light;
+  if (light.kind == LightKind::kPointFromLight) {
+    const Real distance = (std::abs(to_light.x) + std::abs(to_light.y)) + std::abs(to_light.z);
+    const Real away = surface.offset + kLightRoundoffs<Real> * distance;
+    const Vec3<Real> position = FromArray(light.vector);
+    const Vec3<Real> target = surface.position + surface.normal * away;
+    // From the inside of a sphere the light may have to pass the sphere itself.
+    const std::uint32_t source = surface.inside() ? kNoPrimitive : surface.source;
+    return {position, target - position, source, kDefaultTMin<Real>, Real(1)};
+  }
+  const Vec3<Real> start = surface.position + surface.normal * surface.offset;
+  if (light.kind == LightKind::kDirectional) return {start, to_light, surface.source};
+  return {start, FromArray(light.vector) - start, surface.source, kDefaultTMin<Real>, Real(1)};
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_SHADOW_RAY_H_

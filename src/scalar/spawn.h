@@ -1,0 +1,77 @@
+// The rays that a surface sends on: reflection by the mirror law, refraction by Snell's law, split
+// by Fresnel.
+#ifndef SHEAF_SCALAR_SPAWN_H_
+#define SHEAF_SCALAR_SPAWN_H_
+
+#include "src/scalar/shade.h"
+
+namespace sheaf::scalar {
+
+template <typename Real>
+bool SpawnsRays(const MaterialData<Real>& material) {
+  return AnyPositive(material.reflect) || AnyPositive(material.transmit);
+}
+
+// How an interface splits light that arrives at the cosine `cos_i` >= 0.
+template <typename Real>
+struct Split {
+  Real reflectance;  // unpolarised Fresnel; 1 where reflection is total
+  Real cos_t;        // of the refracted ray; 0 where there is none
+  bool is_total;
+};
+
+// `eta` is the index of refraction on the ray's side over that on the other side.
+template <typename Real>
+Split<Real> FresnelSplit(Real eta, Real cos_i) {
+  // Matched indices let everything through unbent, without the rounding of the square root.
+  if (eta == 1) return {0, cos_i, false};
+  const Real k = 1 - (eta * eta) * (1 - cos_i * cos_i);
+  if (!(k > 0)) return {1, 0, true};
+  const Real cos_t = std::sqrt(k);
+  const Real s = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const Real p = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return {(s * s + p * p) / 2, cos_t, false};
+}
+
+// A ray and its throughput; nothing is traced where no component of the weight is positive.
+template <typename Real>
+struct Path {
+  Ray<Real> ray;
+  Real weight[3];
+
+  bool exists() const { return AnyPositive(weight); }
+};
+
+template <typename Real>
+struct Spawned {
+  Path<Real> reflected, refracted;
+};
+
+template <typename Real>
+Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
+                    const Real (&weight)[3]) {
+  const Vec3<Real> n = surface.normal, d = surface.direction;
+  const Real towards = -Dot(n, d);
+  const Real cos_i = towards > 0 ? towards : Real(0);
+  const Real eta = surface.inside() ? material.ior : 1 / material.ior;
+  Split<Real> split{0, 0, true};
+  if (AnyPositive(material.transmit)) split = FresnelSplit(eta, cos_i);
+
+  Spawned<Real> spawned;
+  const Vec3<Real> away = n * surface.offset;
+  spawned.reflected.ray = {surface.position + away, Normalize(d + n * (2 * cos_i)), surface.source};
+  spawned.refracted.ray = {surface.position - away,
+                           Normalize(d * eta + n * (eta * cos_i - split.cos_t)),
+                           surface.source ^ kInsideBit};
+  for (int i = 0; i < 3; ++i) {
+    const Real reflect = material.reflect[i] + material.transmit[i] * split.reflectance;
+    const Real transmit = split.is_total ? Real(0) : material.transmit[i] * (1 - split.reflectance);
+    spawned.reflected.weight[i] = weight[i] * reflect;
+    spawned.refracted.weight[i] = weight[i] * transmit;
+  }
+  return spawned;
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_SPAWN_H_

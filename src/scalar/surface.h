@@ -1,0 +1,95 @@
+// The point that a ray hit: where, facing which way, and how far off a new ray has to start.
+//
+// Positions are reprojected onto the primitive, so that their error does not grow with the distance
+// the ray came; what is left is bounded, and a secondary ray starts that bound away (Pharr, Jakob,
+// Humphreys, "Physically Based Rendering", 4th ed., 6.8). No epsilon is tuned and no scale of the
+// world assumed.
+#ifndef SHEAF_SCALAR_SURFACE_H_
+#define SHEAF_SCALAR_SURFACE_H_
+
+#include "simd/roundoffs.h"
+#include "src/scalar/trace.h"
+
+namespace sheaf::scalar {
+
+// What SurfaceFields in layout.h holds for one hit.
+template <typename Real>
+struct Surface {
+  Vec3<Real> position;
+  Vec3<Real> normal;     // unit, facing the ray
+  Vec3<Real> direction;  // of the ray, unit
+  Real u = 0, v = 0;
+  Real offset;
+  std::uint32_t source;
+
+  bool inside() const { return (source & kInsideBit) != 0; }
+  std::uint32_t primitive() const { return source & ~kInsideBit; }
+};
+
+// `hit.u` says which root the hit is; recomputing that root wide gives a normal without the
+// rounding of t.
+template <typename Real>
+Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
+                            const SphereArrays<Real>& spheres, std::uint32_t i) {
+  using W = Wide<Real>;
+  const Vec3<Real> center = {spheres.center_x[i], spheres.center_y[i], spheres.center_z[i]};
+  const Vec3<W> c = center.template To<W>();
+  const Vec3<W> d = ray.direction.template To<W>();
+  const auto roots = IntersectSphere(ray.origin, ray.direction, center, spheres.radius[i]);
+  const bool leaves = hit.u != 0;
+  const W t = leaves ? roots->far : roots->near;
+  const Vec3<W> out = Normalize((ray.origin.template To<W>() - c) + d * t);
+  const W r = static_cast<W>(spheres.radius[i]);
+  const Vec3<W> position = c + out * r;
+
+  Surface<Real> surface;
+  surface.position = position.template To<Real>();
+  surface.normal = (leaves ? -out : out).template To<Real>();
+  surface.direction = ray.direction;
+  // Where c + r n cancels, the error is that of its wide terms.
+  const Vec3<W> terms = {std::abs(c.x) + r, std::abs(c.y) + r, std::abs(c.z) + r};
+  surface.offset =
+      static_cast<Real>(static_cast<W>(kPositionRoundoffs<Real>) * AbsDot(out, position) +
+                        kTermRoundoffs<W> * AbsDot(out, terms));
+  surface.source = hit.primitive | (leaves ? kInsideBit : 0);
+  return surface;
+}
+
+// The position is the barycentric mean of the vertices, whose error lies almost wholly in the
+// plane.
+template <typename Real>
+Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
+                              const TriangleArrays<Real>& triangles, std::uint32_t i) {
+  using W = Wide<Real>;
+  const Vec3<W> v0 = TriangleVertex(triangles, i, 0).template To<W>();
+  const Vec3<W> v1 = TriangleVertex(triangles, i, 1).template To<W>();
+  const Vec3<W> v2 = TriangleVertex(triangles, i, 2).template To<W>();
+  const W w1 = static_cast<W>(hit.u), w2 = static_cast<W>(hit.v);
+  const W w0 = (1 - w1) - w2;
+  const Vec3<W> front = Normalize(Cross(v1 - v0, v2 - v0));
+  const bool inside = Dot(front, ray.direction.template To<W>()) > 0;
+  const Vec3<W> position = (v0 * w0 + v1 * w1) + v2 * w2;
+
+  Surface<Real> surface;
+  surface.position = position.template To<Real>();
+  surface.normal = (inside ? -front : front).template To<Real>();
+  surface.direction = ray.direction;
+  const auto mean = [&](int axis) {
+    const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };
+    return static_cast<Real>((uv(0) * w0 + uv(1) * w1) + uv(2) * w2);
+  };
+  surface.u = mean(0);
+  surface.v = mean(1);
+  // A neighbour's plane is tested from vertices that are as large as these, not as this point.
+  const Vec3<W> terms = {(std::abs(v0.x) + std::abs(v1.x)) + std::abs(v2.x),
+                         (std::abs(v0.y) + std::abs(v1.y)) + std::abs(v2.y),
+                         (std::abs(v0.z) + std::abs(v1.z)) + std::abs(v2.z)};
+  surface.offset =
+      static_cast<Real>(static_cast<W>(kPositionRoundoffs<Real>) * AbsDot(front, terms));
+  surface.source = hit.primitive | (inside ? kInsideBit : 0);
+  return surface;
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_SURFACE_H_

@@ -1,0 +1,511 @@
+// The command as a user meets it: exit codes, what goes to which stream, files, interruption.
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "src/core/version.h"
+#include "src/formats/pfm.h"
+#include "src/formats/png.h"
+
+extern char** environ;
+
+namespace sheaf {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string kScene = SHEAF_SOURCE_DIR "/scenes/crystal-ball.json";
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void WriteText(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::size_t LineCount(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+struct Outcome {
+  int code;  // the exit code; minus the signal where one killed the command
+  std::string out, err;
+};
+
+// A running `sheaf`. Its streams go to files, which fill no pipe and can be read meanwhile.
+class Process {
+ public:
+  Process(std::vector<std::string> arguments, const std::string& out_path,
+          const std::string& err_path)
+      : out_path_(out_path), err_path_(err_path) {
+    arguments.insert(arguments.begin(), SHEAF_COMMAND);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+    posix_spawn_file_actions_addopen(&actions, 1, out_path.c_str(), flags, 0644);
+    posix_spawn_file_actions_addopen(&actions, 2, err_path.c_str(), flags, 0644);
+    // A test run in the background may have these ignored, and the command honours that.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t deadly;
+    sigemptyset(&deadly);
+    sigaddset(&deadly, SIGINT);
+    sigaddset(&deadly, SIGTERM);
+    posix_spawnattr_setsigdefault(&attributes, &deadly);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    const int failure =
+        posix_spawn(&process_, SHEAF_COMMAND, &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    REQUIRE(failure == 0);
+  }
+
+  void Signal(int number) const { kill(process_, number); }
+  std::string err() const { return ReadText(err_path_); }
+
+  int WaitForExit() const {
+    int status = 0;
+    while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+  Outcome Wait() const {
+    const int code = WaitForExit();
+    return {code, ReadText(out_path_), ReadText(err_path_)};
+  }
+
+ private:
+  pid_t process_ = 0;
+  std::string out_path_, err_path_;
+};
+
+// A folder for the pictures and one beside it for the streams; both go away with the test.
+class Workspace {
+ public:
+  Workspace() {
+    std::string name = (fs::temp_directory_path() / "sheaf-test-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    root_ = name;
+    fs::create_directory(root_ / "files");
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  ~Workspace() { fs::remove_all(root_); }
+
+  std::string operator/(const std::string& name) const { return (root_ / "files" / name).string(); }
+
+  // Names of what lies in the folder, sorted, hidden ones too.
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(root_ / "files")) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  Process Start(const std::vector<std::string>& arguments) const {
+    return {arguments, (root_ / "out").string(), (root_ / "err").string()};
+  }
+  Outcome Run(const std::vector<std::string>& arguments) const { return Start(arguments).Wait(); }
+
+  // `sheaf render SCENE` at a size that takes no time.
+  Outcome Render(std::vector<std::string> arguments) const {
+    const std::vector<std::string> begin = {"render", kScene, "--size", "32x24"};
+    arguments.insert(arguments.begin(), begin.begin(), begin.end());
+    return Run(arguments);
+  }
+
+ private:
+  fs::path root_;
+};
+
+TEST_CASE("help and version go to stdout") {
+  const Workspace work;
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"--help"}, {"-h"}, {"render", "--help"}, {"info", "--help"}}) {
+    const Outcome help = work.Run(arguments);
+    CHECK(help.code == 0);
+    CHECK(help.err.empty());
+    CHECK(Contains(help.out, "Examples:"));
+    CHECK(Contains(help.out, "Exit codes:"));
+  }
+  const Outcome options = work.Run({"render", "--help"});
+  for (const char* option :
+       {"--camera", "--views", "-o", "--size", "--spp", "--max-depth", "--target", "--precision",
+        "--threads", "--tile", "--crop", "--progress", "-q", "--json"}) {
+    CHECK_MESSAGE(Contains(options.out, option), std::string(option));
+  }
+  const Outcome version = work.Run({"--version"});
+  CHECK(version.code == 0);
+  CHECK(version.out == std::string("sheaf ") + kVersion + "\n");
+}
+
+TEST_CASE("without arguments the help goes to stderr, and the code is 2") {
+  const Outcome nothing = Workspace().Run({});
+  CHECK(nothing.code == 2);
+  CHECK(nothing.out.empty());
+  CHECK(Contains(nothing.err, "Usage:"));
+}
+
+TEST_CASE("usage errors: one line on stderr, code 2, no file") {
+  const Workspace work;
+  const std::string png = work / "a.png";
+  const struct {
+    std::vector<std::string> arguments;
+    std::string says;
+  } cases[] = {
+      {{"rendr"}, "did you mean \"render\"?"},
+      {{"render"}, "SCENE"},
+      {{"render", kScene}, "--output"},
+      {{"render", kScene, "-o", png, "--siez", "3x3"}, "did you mean \"--size\"?"},
+      {{"render", kScene, "-o", png, "other.json"}, "other.json"},
+      {{"render", kScene, "-o", work / "a.jpg"}, ".png"},
+      {{"render", kScene, "-o", work / "a"}, ".png"},
+      {{"render", kScene, "-o", png, "--size", "0x10"}, "--size"},
+      {{"render", kScene, "-o", png, "--size", "10x65537"}, "65536"},
+      {{"render", kScene, "-o", png, "--size", "10"}, "--size"},
+      {{"render", kScene, "-o", png, "--size", "10x10x"}, "--size"},
+      {{"render", kScene, "-o", png, "--size", "10x10", "--size", "9x9"}, "--size"},
+      {{"render", kScene, "-o", png, "--spp", "0"}, "--spp"},
+      {{"render", kScene, "-o", png, "--spp", "1.5"}, "--spp"},
+      {{"render", kScene, "-o", png, "--spp", "99999999999"}, "--spp"},
+      {{"render", kScene, "-o", png, "--max-depth", "-1"}, "--max-depth"},
+      {{"render", kScene, "-o", png, "--threads", "-1"}, "--threads"},
+      {{"render", kScene, "-o", png, "--tile", "257"}, "--tile"},
+      {{"render", kScene, "-o", png, "--crop", "0,0,10"}, "--crop"},
+      {{"render", kScene, "-o", png, "--crop", "-1,0,10,10"}, "--crop"},
+      {{"render", kScene, "-o", png, "--crop", "5,5,5,9"}, "--crop"},
+      {{"render", kScene, "-o", png, "--size", "9x9", "--crop", "0,0,10,9"}, "9x9"},
+      {{"render", kScene, "-o", png, "--precision", "fast"}, "strict"},
+      {{"render", kScene, "-o", png, "--progress", "bar"}, "plain"},
+      {{"render", kScene, "-o", png, "--json", "--json"}, "--json"},
+      {{"render", kScene, "-o", png, "--target", "scalr"}, "did you mean \"scalar\"?"},
+      {{"render", kScene, "-o", png, "--target", ""}, "usable"},
+      {{"render", kScene, "-o", png, "--camera", "frnt"},
+       "did you mean \"front\"? (the scene has:"},
+      {{"render", kScene, "-o", png, "--camera", "front,front"}, "--camera"},
+      {{"render", kScene, "-o", png, "--camera", "front,"}, "--camera"},
+      {{"render", kScene, "-o", png, "--camera", "front,up"}, "{camera}"},
+      {{"render", kScene, "-o", png, "--views", "sevn"}, "did you mean \"seven\"?"},
+      {{"render", kScene, "-o", png, "--views", "seven"}, "{camera}"},
+      {{"render", kScene, "-o", work / "{camera}.png", "--views", "seven", "--camera", "up"},
+       "--views"},
+      {{"info", kScene, "extra"}, "extra"},
+  };
+  for (const auto& wrong : cases) {
+    const Outcome outcome = work.Run(wrong.arguments);
+    CAPTURE(wrong.arguments.back());
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err.starts_with("sheaf: "));
+    CHECK(LineCount(outcome.err) == 1);
+    CHECK(Contains(outcome.err, wrong.says));
+  }
+  CHECK(work.Files().empty());
+}
+
+TEST_CASE("an unknown target lists every usable one") {
+  const Workspace work;
+  const json targets = json::parse(work.Run({"info", "--json"}).out)["targets"];
+  const Outcome outcome = work.Render({"-o", work / "a.png", "--target", "mmx"});
+  CHECK(outcome.code == 2);
+  for (const std::string name : targets["usable"]) CHECK(Contains(outcome.err, name));
+  CHECK(Contains(outcome.err, "auto, scalar"));
+}
+
+TEST_CASE("a bad scene: its own line, code 3") {
+  const Workspace work;
+  WriteText(work / "bad.json", "this is no JSON\n");
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"render", work / "bad.json", "-o", work / "a.png"}, {"info", work / "bad.json"}}) {
+    const Outcome outcome = work.Run(arguments);
+    CHECK(outcome.code == 3);
+    CHECK(outcome.out.empty());
+    CHECK(LineCount(outcome.err) == 1);
+    CHECK(outcome.err.starts_with((work / "bad.json") + ":1"));
+  }
+  // What is wrong with the command line comes first.
+  CHECK(work.Run({"render", work / "bad.json", "-o", work / "a.jpg"}).code == 2);
+  CHECK(work.Run({"render", work / "bad.json", "-o", work / "a.png", "--target", "mmx"}).code == 2);
+  CHECK(work.Files() == std::vector<std::string>{"bad.json"});
+}
+
+TEST_CASE("what cannot be read or written is code 4, before rendering") {
+  const Workspace work;
+  const std::string png = work / "a.png";
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"render", work / "absent.json", "-o", png},
+           {"info", work / "absent.json"},
+           {"render", kScene, "-o", work / "absent/a.png"},
+           {"render", kScene, "-o", work / "{camera}/a.png"},
+           {"render", kScene, "-o", png, "--json=" + (work / "absent/a.json")}}) {
+    const Outcome outcome = work.Run(arguments);
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 4);
+    CHECK(outcome.out.empty());
+    CHECK(LineCount(outcome.err) == 1);  // so no frame was begun
+  }
+  CHECK(work.Files().empty());
+}
+
+TEST_CASE("one picture: by default the scene's first camera") {
+  const Workspace work;
+  const Outcome outcome = work.Render({"-o", work / "a.png"});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.empty());
+  CHECK(Contains(outcome.err, "wrote " + (work / "a.png") + "\n"));
+  CHECK(work.Files() == std::vector<std::string>{"a.png"});
+  const Result<Picture8> picture = ReadPng(work / "a.png");
+  REQUIRE(picture.ok());
+  CHECK(picture.value().width == 32);
+  CHECK(picture.value().height == 24);
+
+  const json info = json::parse(work.Run({"info", kScene, "--json"}).out);
+  const std::string first = info["scene"]["cameras"][0]["name"];
+  CHECK(work.Render({"-o", work / "b.png", "--camera", first}).code == 0);
+  CHECK(ReadText(work / "a.png") == ReadText(work / "b.png"));
+}
+
+TEST_CASE("a crop's picture holds the crop") {
+  const Workspace work;
+  CHECK(work.Render({"-o", work / "whole.pfm"}).code == 0);
+  CHECK(work.Render({"-o", work / "crop.pfm", "--crop", "5,7,20,24"}).code == 0);
+  const Result<Film> whole = ReadPfm(work / "whole.pfm"), crop = ReadPfm(work / "crop.pfm");
+  REQUIRE(whole.ok());
+  REQUIRE(crop.ok());
+  REQUIRE(crop.value().width == 15);
+  REQUIRE(crop.value().height == 17);
+  int different = 0;
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 15; ++x) {
+      const float* expected = whole.value().pixel(x + 5, y + 7);
+      if (!std::equal(expected, expected + 3, crop.value().pixel(x, y))) ++different;
+    }
+  }
+  CHECK(different == 0);
+}
+
+TEST_CASE("several cameras: a picture each, {camera} wherever it stands") {
+  const Workspace work;
+  const Outcome two = work.Render({"--camera", "up,front", "-o", work / "{camera}-{camera}.png"});
+  CHECK(two.code == 0);
+  CHECK(work.Files() == std::vector<std::string>{"front-front.png", "up-up.png"});
+  CHECK(two.err.find("up-up.png") < two.err.find("front-front.png"));
+
+  fs::create_directory(work / "near");
+  CHECK(work.Render({"--camera", "near", "-o", work / "{camera}/a.png"}).code == 0);
+  CHECK(fs::exists(work / "near/a.png"));
+
+  CHECK(work.Render({"--views", "seven", "-q", "-o", work / "{camera}.png"}).code == 0);
+  for (const char* name : {"front", "up", "down", "left", "right", "near", "far"}) {
+    CHECK_MESSAGE(fs::exists(work / (std::string(name) + ".png")), std::string(name));
+  }
+}
+
+TEST_CASE("statistics on stdout are one JSON object") {
+  const Workspace work;
+  const Outcome outcome = work.Render({"--camera", "front,near", "--spp", "2", "--threads", "1",
+                                       "--json", "-o", work / "{camera}.png"});
+  REQUIRE(outcome.code == 0);
+  const json statistics = json::parse(outcome.out);
+  CHECK(statistics["sheaf"] == kVersion);
+  CHECK(statistics["scene"] == kScene);
+  REQUIRE(statistics["frames"].size() == 2);
+  for (const json& frame : statistics["frames"]) {
+    const json& rays = frame["rays"];
+    CHECK(frame["picture"] == work / (frame["camera"].get<std::string>() + ".png"));
+    CHECK(frame["width"] == 32);
+    CHECK(frame["height"] == 24);
+    CHECK(frame["samples"] == 2);
+    CHECK(frame["threads"] == 1);
+    CHECK(frame["precision"] == "strict");
+    CHECK(!frame.contains("crop"));
+    CHECK(rays["primary"] == 32 * 24 * 2);
+    CHECK(rays["traced"].get<std::uint64_t>() ==
+          rays["primary"].get<std::uint64_t>() + rays["shadow"].get<std::uint64_t>() +
+              rays["reflected"].get<std::uint64_t>() + rays["refracted"].get<std::uint64_t>() -
+              rays["beyond_depth"].get<std::uint64_t>());
+    CHECK(frame["seconds"]["wall"].get<double>() > 0.0);
+    CHECK(frame["seconds"]["phases"].contains("trace"));
+    CHECK(frame["rays_per_second"].get<double>() > 0.0);
+    CHECK(frame["primitives"]["total"] ==
+          frame["primitives"]["spheres"].get<int>() + frame["primitives"]["triangles"].get<int>());
+  }
+}
+
+TEST_CASE("--json=FILE writes the file and swallows no other argument") {
+  const Workspace work;
+  const Outcome outcome = work.Run({"render", "--json=" + (work / "a.json"), kScene, "--size",
+                                    "32x24", "--crop", "1,2,3,4", "-o", work / "a.png"});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.empty());
+  const json statistics = json::parse(ReadText(work / "a.json"));
+  CHECK(statistics["frames"][0]["crop"] == json({1, 2, 3, 4}));
+  CHECK(work.Run({"render", "--json", kScene, "--size", "32x24", "-o", work / "a.png"}).code == 0);
+}
+
+TEST_CASE("the target that ran is the one that was asked for") {
+  const Workspace work;
+  std::vector<std::string> targets =
+      json::parse(work.Run({"info", "--json"}).out)["targets"]["usable"];
+  REQUIRE(!targets.empty());
+  const std::string best = targets.front();
+  targets.push_back("scalar");
+  for (const std::string& target : targets) {
+    const Outcome outcome = work.Render({"-q", "--json", "--target", target, "-o", work / "a.png"});
+    REQUIRE(outcome.code == 0);
+    CHECK(json::parse(outcome.out)["frames"][0]["target"] == target);
+  }
+  const Outcome automatic = work.Render({"-q", "--json", "-o", work / "a.png"});
+  CHECK(json::parse(automatic.out)["frames"][0]["target"] == best);
+}
+
+TEST_CASE("stderr: plain lines, only the written files, or nothing") {
+  const Workspace work;
+  const std::string wrote = "wrote " + (work / "a.png") + "\n";
+  const Outcome plain = work.Render({"-o", work / "a.png"});  // stderr is no terminal
+  CHECK(LineCount(plain.err) == 3);
+  CHECK(plain.err.starts_with("front: rendering 32x24"));
+  CHECK(Contains(plain.err, "million rays/s"));
+  CHECK(!Contains(plain.err, "\x1b"));
+  CHECK(plain.err.ends_with(wrote));
+  CHECK(work.Render({"-o", work / "a.png", "--progress", "none"}).err == wrote);
+  CHECK(work.Render({"-o", work / "a.png", "-q"}).err.empty());
+  CHECK(work.Render({"-o", work / "a.png", "-q", "--progress", "plain"}).err.empty());
+}
+
+TEST_CASE("info: the machine, and a scene") {
+  const Workspace work;
+  const Outcome text = work.Run({"info"});
+  CHECK(text.code == 0);
+  CHECK(text.err.empty());
+  const json machine = json::parse(work.Run({"info", "--json"}).out);
+  CHECK(!machine.contains("scene"));
+  CHECK(machine["targets"]["chosen"] == machine["targets"]["usable"][0]);
+  CHECK(machine["targets"]["lanes"].get<int>() >= 1);
+  CHECK(Contains(text.out, machine["targets"]["chosen"]));
+  CHECK(Contains(text.out, kVersion));
+
+  const json scene = json::parse(work.Run({"info", kScene, "--json"}).out)["scene"];
+  CHECK(scene["counts"]["spheres"] == 2);
+  CHECK(scene["counts"]["triangles"] == 2);
+  CHECK(scene["counts"]["lights"] == 3);
+  CHECK(scene["counts"]["cameras"] == 7);
+  CHECK(scene["bounds"]["min"] == json({-5.0, -3.0, -16.0}));
+  CHECK(scene["bounds"]["max"] == json({5.0, 2.0, -6.0}));
+  CHECK(scene["views"][0]["name"] == "seven");
+  const std::vector<std::string> features = scene["features"], skipped = scene["skipped"];
+  const auto lists = [](const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const char* name : {"checker textures", "shadows", "refraction and Fresnel reflection"}) {
+    CHECK_MESSAGE(lists(features, name), std::string(name));
+  }
+  CHECK(lists(skipped, "directional lights"));
+  CHECK(lists(skipped, "mirror reflection"));
+  const Outcome described = work.Run({"info", kScene});
+  CHECK(described.code == 0);
+  CHECK(Contains(described.out, "seven: front, up, down, left, right, near, far"));
+}
+
+TEST_CASE("a signal stops the frame: 130 or 143, no new file, the old one untouched") {
+  for (const auto& [signal, code] : {std::pair(SIGINT, 130), {SIGTERM, 143}}) {
+    const Workspace work;
+    WriteText(work / "up.png", "the old picture");
+    const Process process =
+        work.Start({"render", kScene, "--camera", "up,front", "--size", "2048x2048", "--spp",
+                    "4096", "--progress", "plain", "--json", "-o", work / "{camera}.png"});
+    // The first line says that the frame has begun, and so that the signal will be caught.
+    for (int i = 0; i < 1000 && process.err().empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    CHECK(work.Files() == std::vector<std::string>{"up.png"});  // not even a temporary
+    const auto begin = std::chrono::steady_clock::now();
+    process.Signal(signal);
+    const Outcome outcome = process.Wait();
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+    CHECK(outcome.code == code);
+    CHECK(outcome.out.empty());
+    CHECK(Contains(outcome.err, "interrupted"));
+    CHECK(!Contains(outcome.err, "wrote"));
+    CHECK(waited.count() < 30.0);  // a frame of this size takes minutes
+    CHECK(work.Files() == std::vector<std::string>{"up.png"});
+    CHECK(ReadText(work / "up.png") == "the old picture");
+  }
+}
+
+TEST_CASE("output that does not arrive is code 4") {
+  const Workspace work;
+  if (!fs::exists("/dev/full")) return;
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"info"},
+           {"--help"},
+           {"render", kScene, "--size", "8x8", "-q", "--json", "-o", work / "a.png"}}) {
+    const Process process(arguments, "/dev/full", work / "err");
+    CHECK(process.WaitForExit() == 4);
+  }
+  CHECK(fs::exists(work / "a.png"));
+  fs::create_symlink("/dev/full", work / "full.png");
+  const Outcome full = work.Render({"-o", work / "full.png"});
+  CHECK(full.code == 4);
+  CHECK(!Contains(full.err, "wrote"));
+}
+
+TEST_CASE("a picture does not depend on stderr") {
+  const Workspace work;
+  if (!fs::exists("/dev/full")) return;
+  const Process process({"render", kScene, "--size", "8x8", "-o", work / "a.png"}, work / "out",
+                        "/dev/full");
+  CHECK(process.WaitForExit() == 0);
+  CHECK(ReadPng(work / "a.png").ok());
+}
+
+TEST_CASE("a reader that goes away is code 4, not a signal") {
+  const Workspace work;
+  const std::string fifo = work / "fifo";
+  REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
+  const int reader = open(fifo.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  REQUIRE(reader >= 0);
+  const Process process(
+      {"render", kScene, "--size", "1024x768", "--spp", "4", "-q", "--json", "-o", work / "a.png"},
+      fifo, work / "err");
+  close(reader);  // the command has the pipe open, and writes to it once the picture is done
+  CHECK(process.WaitForExit() == 4);
+  CHECK(Contains(process.err(), "standard output"));
+}
+
+}  // namespace
+}  // namespace sheaf

@@ -1,0 +1,360 @@
+// The camera, surface, shading and spawning kernels against src/scalar, bit by bit, on every
+// target.
+#include <cstring>
+
+#include "random_scene.h"
+#include "simd/face_light.h"
+#include "simd/generate_primary.h"
+#include "simd/generate_shadow.h"
+#include "simd/shade_ambient.h"
+#include "simd/shade_light.h"
+#include "simd/spawn_rays.h"
+#include "simd/sphere_surface.h"
+#include "simd/triangle_surface.h"
+#include "src/scalar/camera_ray.h"
+#include "src/scalar/shadow_ray.h"
+#include "src/scalar/spawn.h"
+#include "targets.h"
+
+namespace sheaf {
+namespace {
+
+using scalar::Ray;
+using scalar::Surface;
+using scalar::Vec3;
+
+template <typename Real>
+bool SameBits(Real a, Real b) {
+  return std::memcmp(&a, &b, sizeof(Real)) == 0;
+}
+template <typename Real>
+bool SameBits(Vec3<Real> a, Real x, Real y, Real z) {
+  return SameBits(a.x, x) && SameBits(a.y, y) && SameBits(a.z, z);
+}
+
+template <typename Real>
+Vec3<Real> RandomUnit(Random& random) {
+  const Vec3d v = UniformPoint(random, -1, 1);
+  return scalar::Normalize(Vec3<double>{v.x, v.y, v.z}).template To<Real>();
+}
+
+// Rays that all hit primitive `local` of their kind, with their surfaces by the specification.
+template <typename Real>
+struct HitSample {
+  std::vector<Ray<Real>> rays;
+  std::vector<scalar::Hit<Real>> hits;
+  std::vector<std::uint32_t> local;
+  std::vector<Surface<Real>> surfaces;
+};
+
+enum class Shape { kSphere, kTriangle };
+
+template <typename Real>
+HitSample<Real> SampleHits(Random& random, const CompiledScene<Real>& scene, Shape shape,
+                           std::uint32_t count) {
+  HitSample<Real> sample;
+  const auto geometry = scene.geometry();
+  while (sample.rays.size() < count) {
+    const Vec3d o = UniformPoint(random, -3, 3);
+    const Ray<Real> ray{Vec3<double>{o.x, o.y, o.z}.To<Real>(), RandomUnit<Real>(random)};
+    const auto hit = scalar::TraceClosest(geometry, ray);
+    if (hit.primitive == kNoPrimitive) continue;
+    const std::uint32_t local = scene.primitives[hit.primitive].local;
+    if (((local & kTriangleBit) != 0) != (shape == Shape::kTriangle)) continue;
+    const std::uint32_t index = local & ~kTriangleBit;
+    sample.rays.push_back(ray);
+    sample.hits.push_back(hit);
+    sample.local.push_back(index);
+    sample.surfaces.push_back(shape == Shape::kSphere
+                                  ? scalar::SphereSurface(ray, hit, geometry.spheres, index)
+                                  : scalar::TriangleSurface(ray, hit, geometry.triangles, index));
+  }
+  return sample;
+}
+
+template <typename Real>
+void Fill(SurfaceStream<Real>& stream, const std::vector<Surface<Real>>& surfaces) {
+  stream.Allocate(static_cast<std::uint32_t>(surfaces.size()));
+  const auto out = stream.output();
+  for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
+    const Surface<Real>& s = surfaces[i];
+    out.position_x[i] = s.position.x, out.position_y[i] = s.position.y,
+    out.position_z[i] = s.position.z;
+    out.normal_x[i] = s.normal.x, out.normal_y[i] = s.normal.y, out.normal_z[i] = s.normal.z;
+    out.direction_x[i] = s.direction.x, out.direction_y[i] = s.direction.y;
+    out.direction_z[i] = s.direction.z;
+    out.u[i] = s.u, out.v[i] = s.v, out.offset[i] = s.offset, out.source[i] = s.source;
+    out.ray[i] = i;
+  }
+}
+
+template <typename Real>
+std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count) {
+  std::vector<Surface<Real>> surfaces;
+  while (surfaces.size() < count) {
+    Surface<Real> s;
+    const Vec3d p = UniformPoint(random, -5, 5);
+    s.position = Vec3<double>{p.x, p.y, p.z}.To<Real>();
+    s.direction = RandomUnit<Real>(random);
+    s.normal = RandomUnit<Real>(random);
+    if (scalar::Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
+    if (random() % 8 == 0) s.normal = -s.direction;
+    s.u = static_cast<Real>(Uniform(random, 0, 1));
+    s.v = static_cast<Real>(random() % 8 == 0 ? 0.5 : Uniform(random, 0, 1));
+    s.offset = static_cast<Real>(Uniform(random, 0, 1e-5));
+    s.source = static_cast<std::uint32_t>(random() % 7) | (random() % 2 ? kInsideBit : 0);
+    surfaces.push_back(s);
+  }
+  return surfaces;
+}
+
+template <typename Real>
+MaterialData<Real> RandomMaterial(Random& random) {
+  const auto real = [&](double low, double high) {
+    return static_cast<Real>(Uniform(random, low, high));
+  };
+  MaterialData<Real> m{};
+  m.kind = random() % 2 ? BaseColour::kChecker : BaseColour::kConstant;
+  const bool transmits = random() % 2, reflects = random() % 2;
+  for (int i = 0; i < 3; ++i) {
+    m.even[i] = real(0, 1), m.odd[i] = real(0, 1), m.ambient[i] = real(0, 0.5);
+    m.reflect[i] = reflects ? real(0, 1) : Real(0);
+    m.transmit[i] = transmits ? real(0, 1) : Real(0);
+  }
+  m.cells[0] = real(1, 20), m.cells[1] = 10;
+  m.kd = real(0, 1);
+  m.ks = random() % 4 ? real(0, 1) : Real(0);
+  const Real shininess[] = {0, 1, 25, 200, 1e6, Real(11.1434)};
+  m.shininess = shininess[random() % 6];
+  const Real ior[] = {1, 1.5, Real(0.7), 2.4f};
+  m.ior = ior[random() % 4];
+  return m;
+}
+
+template <typename Real>
+LightData<Real> RandomLight(Random& random, LightKind kind) {
+  LightData<Real> light{};
+  light.kind = kind;
+  const Vec3d p = UniformPoint(random, -30, 30);
+  const auto unit = RandomUnit<Real>(random);
+  for (int i = 0; i < 3; ++i) {
+    light.vector[i] = kind == LightKind::kDirectional ? unit[i] : static_cast<Real>(p[i]);
+    light.rgb[i] = static_cast<Real>(Uniform(random, 0, 100));
+    light.falloff[i] = static_cast<Real>(random() % 2 ? Uniform(random, 0, 1) : 0);
+  }
+  if (kind == LightKind::kDirectional || light.falloff[2] == 0) light.falloff[0] = 1;
+  light.casts_shadows = 1;
+  return light;
+}
+
+constexpr LightKind kLightKinds[] = {LightKind::kPointFromLight, LightKind::kPointFromSurface,
+                                     LightKind::kDirectional};
+constexpr std::uint32_t kCounts[] = {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 32, 33, 200};
+
+TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
+  ForEachTarget([](const std::string&) {
+    Camera camera;
+    camera.eye = {1, 2, 3};
+    camera.look_at = {-0.25, -1, -10};
+    for (const bool orthographic : {false, true}) {
+      if (orthographic) camera.projection = Orthographic{4.0};
+      const CameraData<Real> data = CompileCamera<Real>(camera, 640, 479);
+      for (const std::uint32_t count : kCounts) {
+        RayStream<Real> rays;
+        rays.Allocate(count);
+        AlignedArray<Real> x, y;
+        x.Allocate(StreamCapacity(count)), y.Allocate(StreamCapacity(count));
+        for (std::uint32_t i = 0; i < count; ++i) {
+          x[i] = static_cast<Real>(i * 37 % 640), y[i] = static_cast<Real>(i * 53 % 479);
+        }
+        const Real sx = Real(0.5), sy = Real(0.3);
+        simd::GeneratePrimary(data, x.data(), y.data(), sx, sy, count, rays.output());
+        const auto got = rays.view();
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const Ray<Real> want = scalar::CameraRay(data, x[i], y[i], sx, sy);
+          REQUIRE(SameBits(want.origin, got.origin_x[i], got.origin_y[i], got.origin_z[i]));
+          REQUIRE(
+              SameBits(want.direction, got.direction_x[i], got.direction_y[i], got.direction_z[i]));
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
+  ForEachTarget([](const std::string&) {
+    Random random(4);
+    const CompiledScene<Real> scene = CompileScene<Real>(RandomScene(random, 24));
+    const auto geometry = scene.geometry();
+    for (const Shape shape : {Shape::kSphere, Shape::kTriangle}) {
+      for (const std::uint32_t count : kCounts) {
+        const HitSample<Real> sample = SampleHits(random, scene, shape, count);
+        RayStream<Real> rays;
+        HitStream<Real> hits;
+        SurfaceStream<Real> surfaces;
+        rays.Allocate(count), hits.Allocate(count), surfaces.Allocate(count);
+        AlignedArray<std::uint32_t> ray, local, primitive;
+        for (auto* list : {&ray, &local, &primitive}) list->Allocate(StreamCapacity(count));
+        // The batch lists its rays backwards; what lies past its end must not be followed.
+        for (std::uint32_t i = 0; i < StreamCapacity(count); ++i) ray[i] = local[i] = 0x7ffffff0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const auto out = rays.output();
+          const auto hit = hits.output();
+          out.origin_x[i] = sample.rays[i].origin.x;
+          out.origin_y[i] = sample.rays[i].origin.y;
+          out.origin_z[i] = sample.rays[i].origin.z;
+          out.direction_x[i] = sample.rays[i].direction.x;
+          out.direction_y[i] = sample.rays[i].direction.y;
+          out.direction_z[i] = sample.rays[i].direction.z;
+          hit.t[i] = sample.hits[i].t, hit.u[i] = sample.hits[i].u, hit.v[i] = sample.hits[i].v;
+          ray[i] = count - 1 - i;
+          local[i] = sample.local[count - 1 - i];
+          primitive[i] = sample.hits[count - 1 - i].primitive;
+        }
+        const HitBatch batch{ray.data(), local.data(), primitive.data(), count};
+        if (shape == Shape::kSphere) {
+          simd::SphereSurfaces(geometry.spheres, rays.view(), hits.view(), batch,
+                               surfaces.output());
+        } else {
+          simd::TriangleSurfaces(geometry.triangles, rays.view(), hits.view(), batch,
+                                 surfaces.output());
+        }
+        const auto got = surfaces.view();
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const Surface<Real>& want = sample.surfaces[ray[i]];
+          REQUIRE(SameBits(want.position, got.position_x[i], got.position_y[i], got.position_z[i]));
+          REQUIRE(SameBits(want.normal, got.normal_x[i], got.normal_y[i], got.normal_z[i]));
+          REQUIRE(
+              SameBits(want.direction, got.direction_x[i], got.direction_y[i], got.direction_z[i]));
+          REQUIRE(SameBits(want.u, got.u[i]));
+          REQUIRE(SameBits(want.v, got.v[i]));
+          REQUIRE(SameBits(want.offset, got.offset[i]));
+          REQUIRE(want.source == got.source[i]);
+          REQUIRE(got.ray[i] == ray[i]);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, float, double) {
+  ForEachTarget([](const std::string&) {
+    Random random(5);
+    for (int round = 0; round < 60; ++round) {
+      const std::uint32_t count = kCounts[round % 14];
+      const LightData<Real> light = RandomLight<Real>(random, kLightKinds[round % 3]);
+      const MaterialData<Real> material = RandomMaterial<Real>(random);
+      const auto want = RandomSurfaces<Real>(random, count);
+      SurfaceStream<Real> surfaces;
+      Fill(surfaces, want);
+      ColourStream<Real> colours;
+      RayStream<Real> rays;
+      colours.Allocate(count), rays.Allocate(count);
+      AlignedArray<std::uint32_t> faces, surface_of_ray;
+      faces.Allocate(StreamCapacity(count)), surface_of_ray.Allocate(StreamCapacity(count));
+
+      simd::ShadeAmbient(material, surfaces.view(), count, colours.output());
+      const std::uint32_t facing =
+          simd::FaceLight(light, material, surfaces.view(), count, faces.data());
+      const std::uint32_t shadows = simd::GenerateShadow(
+          light, surfaces.view(), faces.data(), count, rays.output(), surface_of_ray.data());
+      REQUIRE(shadows == facing);
+      // Every third surface that faces the light is in shadow.
+      for (std::uint32_t i = 0; i < count; i += 3) faces[i] = 0;
+      simd::ShadeLight(light, material, surfaces.view(), faces.data(), count, colours.output());
+
+      std::uint32_t ray = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto base = scalar::BaseColourAt(material, want[i]);
+        const bool shows = scalar::HasLocalLight(material, want[i]);
+        Vec3<Real> colour{0, 0, 0};
+        if (shows) colour = scalar::AmbientLight(material, base);
+        const auto incidence = scalar::IncidenceOf(light, want[i]);
+        if (shows && incidence.n_dot_l > 0) {
+          REQUIRE(ray < shadows);
+          const Ray<Real> shadow = scalar::ShadowRay(light, want[i], incidence);
+          const auto got = rays.view();
+          REQUIRE(surface_of_ray[ray] == i);
+          REQUIRE(SameBits(shadow.origin, got.origin_x[ray], got.origin_y[ray], got.origin_z[ray]));
+          REQUIRE(SameBits(shadow.direction, got.direction_x[ray], got.direction_y[ray],
+                           got.direction_z[ray]));
+          REQUIRE(shadow.source == got.source[ray]);
+          ++ray;
+          if (i % 3 != 0)
+            colour = colour + scalar::LitBy(light, material, want[i], base, incidence);
+        }
+        REQUIRE(SameBits(colour, colours.view().r[i], colours.view().g[i], colours.view().b[i]));
+      }
+      REQUIRE(ray == shadows);
+    }
+  });
+}
+
+template <typename Real>
+void CheckChildren(const std::vector<scalar::Path<Real>>& want,
+                   const std::vector<std::uint32_t>& parent, std::uint32_t count,
+                   const RayView<Real>& rays, const PathView<Real>& paths) {
+  REQUIRE(count == want.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    REQUIRE(SameBits(want[i].ray.origin, rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]));
+    REQUIRE(SameBits(want[i].ray.direction, rays.direction_x[i], rays.direction_y[i],
+                     rays.direction_z[i]));
+    REQUIRE(want[i].ray.source == rays.source[i]);
+    REQUIRE(parent[i] == paths.parent[i]);
+    REQUIRE(SameBits(want[i].weight[0], paths.weight_r[i]));
+    REQUIRE(SameBits(want[i].weight[1], paths.weight_g[i]));
+    REQUIRE(SameBits(want[i].weight[2], paths.weight_b[i]));
+  }
+}
+
+TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
+  ForEachTarget([](const std::string&) {
+    Random random(6);
+    for (int round = 0; round < 60; ++round) {
+      const std::uint32_t count = kCounts[round % 14];
+      const MaterialData<Real> material = RandomMaterial<Real>(random);
+      const auto surfaces = RandomSurfaces<Real>(random, count);
+      SurfaceStream<Real> stream;
+      Fill(stream, surfaces);
+      PathStream<Real> parents, reflected_paths, refracted_paths;
+      RayStream<Real> reflected, refracted;
+      for (auto* paths : {&parents, &reflected_paths, &refracted_paths}) paths->Allocate(count);
+      reflected.Allocate(count), refracted.Allocate(count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto weights = parents.output();
+        weights.weight_r[i] = static_cast<Real>(Uniform(random, 0, 1));
+        weights.weight_g[i] = static_cast<Real>(Uniform(random, 0, 1));
+        weights.weight_b[i] = 0;
+      }
+      auto view = parents.view();
+      if (round % 2) view.weight_r = view.weight_g = view.weight_b = nullptr;
+      const simd::SpawnCounts counts =
+          simd::SpawnRays(material, stream.view(), count, view, reflected.output(),
+                          reflected_paths.output(), refracted.output(), refracted_paths.output());
+
+      std::vector<scalar::Path<Real>> want_reflected, want_refracted;
+      std::vector<std::uint32_t> parent_of_reflected, parent_of_refracted;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        Real weight[3] = {1, 1, 1};
+        if (round % 2 == 0)
+          weight[0] = view.weight_r[i], weight[1] = view.weight_g[i], weight[2] = 0;
+        const auto spawned = scalar::Spawn(material, surfaces[i], weight);
+        if (spawned.reflected.exists()) {
+          want_reflected.push_back(spawned.reflected);
+          parent_of_reflected.push_back(i);
+        }
+        if (spawned.refracted.exists()) {
+          want_refracted.push_back(spawned.refracted);
+          parent_of_refracted.push_back(i);
+        }
+      }
+      CheckChildren<Real>(want_reflected, parent_of_reflected, counts.reflected, reflected.view(),
+                          reflected_paths.view());
+      CheckChildren<Real>(want_refracted, parent_of_refracted, counts.refracted, refracted.view(),
+                          refracted_paths.view());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace sheaf
