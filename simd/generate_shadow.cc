@@ -29,22 +29,24 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
     const V px = hn::LoadU(d, surfaces.position_x + i);
     const V py = hn::LoadU(d, surfaces.position_y + i);
     const V pz = hn::LoadU(d, surfaces.position_z + i);
+    const V nx = hn::LoadU(d, surfaces.normal_x + i);
+    const V ny = hn::LoadU(d, surfaces.normal_y + i);
+    const V nz = hn::LoadU(d, surfaces.normal_z + i);
     V away = hn::LoadU(d, surfaces.offset + i);
     auto source = LoadIds(d, surfaces.source + i);
     if (light.kind == LightKind::kPointFromLight) {
-      const V distance =
-          hn::Add(hn::Add(hn::Abs(hn::Sub(light_x, px)), hn::Abs(hn::Sub(light_y, py))),
-                  hn::Abs(hn::Sub(light_z, pz)));
-      away = hn::Add(away, hn::Mul(hn::Set(d, kLightRoundoffs<Real>), distance));
+      const V error =
+          AbsDot(d, nx, ny, nz, hn::Sub(light_x, px), hn::Sub(light_y, py), hn::Sub(light_z, pz));
+      away = hn::Add(away, hn::Mul(hn::Set(d, kLightRoundoffs<Real>), error));
       // From the inside of a sphere the light may have to pass the sphere itself.
       const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
       const auto inside = hn::Ne(hn::And(source, bit), hn::Zero(di));
       source = hn::IfThenElse(inside, hn::Set(di, hn::TFromD<decltype(di)>{kNoPrimitive}), source);
     }
     // The end of the ray that lies above the surface.
-    const V qx = hn::Add(px, hn::Mul(hn::LoadU(d, surfaces.normal_x + i), away));
-    const V qy = hn::Add(py, hn::Mul(hn::LoadU(d, surfaces.normal_y + i), away));
-    const V qz = hn::Add(pz, hn::Mul(hn::LoadU(d, surfaces.normal_z + i), away));
+    const V qx = hn::Add(px, hn::Mul(nx, away));
+    const V qy = hn::Add(py, hn::Mul(ny, away));
+    const V qz = hn::Add(pz, hn::Mul(nz, away));
     V ox = qx, oy = qy, oz = qz, dx = light_x, dy = light_y, dz = light_z;
     if (light.kind == LightKind::kPointFromLight) {
       ox = light_x, oy = light_y, oz = light_z;

@@ -21,10 +21,10 @@ inline constexpr Real kPositionRoundoffs = 8 * kRoundoff<Real>;
 template <typename Wide>
 inline constexpr Wide kTermRoundoffs = 64 * kRoundoff<Wide>;
 
-// From a light, t = 1 is the surface and every rounding is relative to the distance: that of the
-// direction, of the vertices seen from the light and of t. Sixteen roundoffs of it cover them.
+// From a light, t = 1 is the surface and every rounding is relative to the distance d: one for the direction, one for
+// a vertex seen from the light, six for t. Along the normal n that is eight times |n| . |d| componentwise.
 template <typename Real>
-inline constexpr Real kLightRoundoffs = 16 * kRoundoff<Real>;
+inline constexpr Real kLightRoundoffs = 8 * kRoundoff<Real>;
 
 // Lights that no shadow ray may start from (LightKind::kPointFromSurface): farther from the scene
 // than this many of its diameters, kLightRoundoffs of the distance would show.

@@ -1,5 +1,7 @@
 #include "src/render/render.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -41,8 +43,7 @@ class ScalarTileRenderer {
   }
 
   RayCounts rays() const {
-    return {tally_.primary, tally_.shadow, tally_.reflected, tally_.refracted,
-            tally_.beyond_depth};
+    return {tally_.primary, tally_.shadow, tally_.reflected, tally_.refracted, tally_.beyond_depth};
   }
   double phase_seconds(Phase /*phase*/) const { return 0; }
 
@@ -126,8 +127,7 @@ Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect&
 // What is wrong with the options, or nothing.
 std::string Complaint(const RenderOptions& options) {
   const auto out_of_range = [](const char* what, int low, int high) {
-    return std::string(what) + " must lie in [" + std::to_string(low) + ", " +
-           std::to_string(high) + "]";
+    return fmt::format("{} must lie in [{}, {}]", what, low, high);
   };
   const auto within = [](int value, int low, int high) { return low <= value && value <= high; };
   if (!within(options.width, 1, kMaxImageSide)) return out_of_range("width", 1, kMaxImageSide);

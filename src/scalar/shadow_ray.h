@@ -11,8 +11,7 @@ Ray<Real> ShadowRay(const LightData<Real>& light, const Surface<Real>& surface,
                     const Incidence<Real>& incidence) {
   const Vec3<Real> to_light = incidence.to_light;
   if (light.kind == LightKind::kPointFromLight) {
-    const Real distance = (std::abs(to_light.x) + std::abs(to_light.y)) + std::abs(to_light.z);
-    const Real away = surface.offset + kLightRoundoffs<Real> * distance;
+    const Real away = surface.offset + kLightRoundoffs<Real> * AbsDot(surface.normal, to_light);
     const Vec3<Real> position = FromArray(light.vector);
     const Vec3<Real> target = surface.position + surface.normal * away;
     // From the inside of a sphere the light may have to pass the sphere itself.
