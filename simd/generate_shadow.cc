@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "simd/generate_shadow.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "simd/compact-inl.h"
 #include "simd/dispatch.h"
 #include "simd/light-inl.h"
 #include "simd/roundoffs.h"
@@ -54,16 +55,17 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
     } else if (light.kind == LightKind::kPointFromSurface) {
       dx = hn::Sub(light_x, qx), dy = hn::Sub(light_y, qy), dz = hn::Sub(light_z, qz);
     }
-    CompressStoreAt(d, ox, lanes, rays.origin_x + size);
-    CompressStoreAt(d, oy, lanes, rays.origin_y + size);
-    CompressStoreAt(d, oz, lanes, rays.origin_z + size);
-    CompressStoreAt(d, dx, lanes, rays.direction_x + size);
-    CompressStoreAt(d, dy, lanes, rays.direction_y + size);
-    CompressStoreAt(d, dz, lanes, rays.direction_z + size);
-    CompressStoreIdsAt(d, source, lanes, rays.source + size);
-    CompressStoreIdsAt(d, hn::Iota(di, static_cast<hn::TFromD<decltype(di)>>(i)), lanes,
-                       surface_of_ray + size);
-    size += static_cast<std::uint32_t>(hn::CountTrue(d, lanes));
+    const auto order = CompactOrder(d, lanes);
+    CompactStore(d, ox, order, rays.origin_x + size);
+    CompactStore(d, oy, order, rays.origin_y + size);
+    CompactStore(d, oz, order, rays.origin_z + size);
+    CompactStore(d, dx, order, rays.direction_x + size);
+    CompactStore(d, dy, order, rays.direction_y + size);
+    CompactStore(d, dz, order, rays.direction_z + size);
+    CompactStoreIds(d, source, order, rays.source + size);
+    CompactStoreIds(d, hn::Iota(di, static_cast<hn::TFromD<decltype(di)>>(i)), order,
+                    surface_of_ray + size);
+    size += CountLanes(d, lanes);
   }
   return size;
 }

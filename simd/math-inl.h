@@ -78,17 +78,6 @@ HWY_INLINE hn::Vec<D> GatherAt(D d, const hn::TFromD<D>* HWY_RESTRICT array, V i
   return hn::GatherIndex(d, array, hn::BitCast(hn::RebindToSigned<D>(), ids));
 }
 
-// Stores the lanes of `kept` without gaps, and rubbish up to a whole vector. Compress and StoreU,
-// because CompressStore costs tens of nanoseconds on some processors (Zen 4).
-template <class D, class M>
-HWY_INLINE void CompressStoreAt(D d, hn::Vec<D> v, M kept, hn::TFromD<D>* to) {
-  hn::StoreU(hn::Compress(v, kept), d, to);
-}
-template <class D, class M>
-HWY_INLINE void CompressStoreIdsAt(D d, hn::Vec<IdLanes<D>> v, M kept, std::uint32_t* to) {
-  StoreIds(d, hn::Compress(v, hn::RebindMask(IdLanes<D>(), kept)), to);
-}
-
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Dot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));

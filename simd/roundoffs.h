@@ -21,8 +21,9 @@ inline constexpr Real kPositionRoundoffs = 8 * kRoundoff<Real>;
 template <typename Wide>
 inline constexpr Wide kTermRoundoffs = 64 * kRoundoff<Wide>;
 
-// From a light, t = 1 is the surface and every rounding is relative to the distance d: one for the direction, one for
-// a vertex seen from the light, six for t. Along the normal n that is eight times |n| . |d| componentwise.
+// From a light, t = 1 is the surface and every rounding is relative to the distance d: one for the
+// direction, one for a vertex seen from the light, six for t. Along the normal n that is eight
+// times |n| . |d| componentwise.
 template <typename Real>
 inline constexpr Real kLightRoundoffs = 8 * kRoundoff<Real>;
 

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "simd/spawn_rays.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "simd/compact-inl.h"
 #include "simd/dispatch.h"
 #include "simd/material-inl.h"
 
@@ -85,18 +86,19 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
       const auto kept = hn::And(lanes, positive);
       if (hn::AllFalse(d, kept)) return;
       Normalize(d, x, y, z);
-      CompressStoreAt(d, ox, kept, rays.origin_x + at);
-      CompressStoreAt(d, oy, kept, rays.origin_y + at);
-      CompressStoreAt(d, oz, kept, rays.origin_z + at);
-      CompressStoreAt(d, x, kept, rays.direction_x + at);
-      CompressStoreAt(d, y, kept, rays.direction_y + at);
-      CompressStoreAt(d, z, kept, rays.direction_z + at);
-      CompressStoreIdsAt(d, from, kept, rays.source + at);
-      CompressStoreIdsAt(d, parent, kept, paths.parent + at);
-      CompressStoreAt(d, wr, kept, paths.weight_r + at);
-      CompressStoreAt(d, wg, kept, paths.weight_g + at);
-      CompressStoreAt(d, wb, kept, paths.weight_b + at);
-      at += static_cast<std::uint32_t>(hn::CountTrue(d, kept));
+      const auto order = CompactOrder(d, kept);
+      CompactStore(d, ox, order, rays.origin_x + at);
+      CompactStore(d, oy, order, rays.origin_y + at);
+      CompactStore(d, oz, order, rays.origin_z + at);
+      CompactStore(d, x, order, rays.direction_x + at);
+      CompactStore(d, y, order, rays.direction_y + at);
+      CompactStore(d, z, order, rays.direction_z + at);
+      CompactStoreIds(d, from, order, rays.source + at);
+      CompactStoreIds(d, parent, order, paths.parent + at);
+      CompactStore(d, wr, order, paths.weight_r + at);
+      CompactStore(d, wg, order, paths.weight_g + at);
+      CompactStore(d, wb, order, paths.weight_b + at);
+      at += CountLanes(d, kept);
     };
 
     const auto reflected_weight = [&](V parent_weight, int channel) HWY_ATTR {
