@@ -98,6 +98,15 @@ HWY_INLINE void Normalize(D d, V& x, V& y, V& z) {
   z = hn::Div(z, length);
 }
 
+// NormalizeWide in src/scalar/vec3.h.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void NormalizeWide(D d, V& x, V& y, V& z) {
+  const V scale = hn::Div(hn::Set(d, hn::TFromD<D>(1)), hn::Sqrt(Dot(d, x, y, z, x, y, z)));
+  x = hn::Mul(x, scale);
+  y = hn::Mul(y, scale);
+  z = hn::Mul(z, scale);
+}
+
 // Lanes of a batch of `count` that the vector at `i` covers.
 template <class D>
 HWY_INLINE hn::Mask<D> LanesBelow(D d, std::uint32_t i, std::uint32_t count) {

@@ -45,7 +45,7 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
     auto nx = hn::Add(fx, hn::Mul(dx, t));
     auto ny = hn::Add(fy, hn::Mul(dy, t));
     auto nz = hn::Add(fz, hn::Mul(dz, t));
-    Normalize(dw, nx, ny, nz);
+    NormalizeWide(dw, nx, ny, nz);
 
     const auto px = hn::Add(cx, hn::Mul(nx, r));
     const auto py = hn::Add(cy, hn::Mul(ny, r));

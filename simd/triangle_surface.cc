@@ -45,7 +45,7 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     W nx = hn::Sub(hn::Mul(ey, gz), hn::Mul(ez, gy));
     W ny = hn::Sub(hn::Mul(ez, gx), hn::Mul(ex, gz));
     W nz = hn::Sub(hn::Mul(ex, gy), hn::Mul(ey, gx));
-    Normalize(dw, nx, ny, nz);
+    NormalizeWide(dw, nx, ny, nz);
     const auto inside_wide =
         hn::Gt(Dot(dw, nx, ny, nz, Widen(direction_x), Widen(direction_y), Widen(direction_z)),
                hn::Zero(dw));

@@ -221,6 +221,18 @@ void TileRenderer<Real>::OrderPixels(const PixelRect& tile) {
     sample_.Allocate(size);
     pixels_.Allocate(size);
   }
+  if (tile.width() == ordered_.width() && tile.height() == ordered_.height()) {
+    // The shape of the last tile: only moved.
+    const Real right = static_cast<Real>(tile.x0 - ordered_.x0);
+    const Real down = static_cast<Real>(tile.y0 - ordered_.y0);
+    for (std::uint32_t i = 0; i < pixel_count_; ++i) {
+      pixel_x_[i] += right;
+      pixel_y_[i] += down;
+    }
+    ordered_ = tile;
+    return;
+  }
+  ordered_ = tile;
   const auto side =
       std::bit_ceil(static_cast<std::uint32_t>(std::max(tile.width(), tile.height())));
   pixel_count_ = 0;

@@ -38,7 +38,7 @@ Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   const auto roots = IntersectSphere(ray.origin, ray.direction, center, spheres.radius[i]);
   const bool leaves = hit.u != 0;
   const W t = leaves ? roots->far : roots->near;
-  const Vec3<W> out = Normalize((ray.origin.template To<W>() - c) + d * t);
+  const Vec3<W> out = NormalizeWide((ray.origin.template To<W>() - c) + d * t);
   const W r = static_cast<W>(spheres.radius[i]);
   const Vec3<W> position = c + out * r;
 
@@ -66,7 +66,7 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   const Vec3<W> v2 = TriangleVertex(triangles, i, 2).template To<W>();
   const W w1 = static_cast<W>(hit.u), w2 = static_cast<W>(hit.v);
   const W w0 = (1 - w1) - w2;
-  const Vec3<W> front = Normalize(Cross(v1 - v0, v2 - v0));
+  const Vec3<W> front = NormalizeWide(Cross(v1 - v0, v2 - v0));
   const bool inside = Dot(front, ray.direction.template To<W>()) > 0;
   const Vec3<W> position = (v0 * w0 + v1 * w1) + v2 * w2;
 

@@ -80,6 +80,12 @@ Vec3<Real> Normalize(Vec3<Real> a) {
   return a / std::sqrt(Dot(a, a));
 }
 
+// One division instead of three, where the result is rounded to a narrower type anyway.
+template <typename Real>
+Vec3<Real> NormalizeWide(Vec3<Real> a) {
+  return a * (1 / std::sqrt(Dot(a, a)));
+}
+
 }  // namespace sheaf::scalar
 
 #endif  // SHEAF_SCALAR_VEC3_H_
