@@ -22,8 +22,9 @@ struct SphereRoots {
 
 // Nothing where the line misses. A NaN radius always misses.
 template <typename Real>
-std::optional<SphereRoots<Real>> IntersectSphere(Vec3<Real> origin, Vec3<Real> direction,
-                                                 Vec3<Real> center, Real radius) {
+SHEAF_INLINE std::optional<SphereRoots<Real>> IntersectSphere(Vec3<Real> origin,
+                                                              Vec3<Real> direction,
+                                                              Vec3<Real> center, Real radius) {
   using W = Wide<Real>;
   const Vec3<W> f = origin.template To<W>() - center.template To<W>();
   const Vec3<W> d = direction.template To<W>();

@@ -40,9 +40,9 @@ struct TriangleHit {
 };
 
 template <typename Real>
-std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origin,
-                                                   const TriangleShear<Real>& shear,
-                                                   const Vec3<Real> (&vertex)[3]) {
+SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origin,
+                                                                const TriangleShear<Real>& shear,
+                                                                const Vec3<Real> (&vertex)[3]) {
   const Vec3<Real> a = vertex[0] - origin, b = vertex[1] - origin, c = vertex[2] - origin;
   const auto [kx, ky, kz, sx, sy, dz] = shear;
   const Real ax = a[kx] - sx * a[kz], ay = a[ky] - sy * a[kz];

@@ -33,7 +33,7 @@ bool IsFinite(Vec3<Real> a) {
 // A ray with a component that is not finite, without a direction or with an empty interval misses
 // everything. t_min <= t_max is false for NaN.
 template <typename Real>
-bool IsTraceable(const Ray<Real>& ray) {
+SHEAF_INLINE bool IsTraceable(const Ray<Real>& ray) {
   const bool has_direction = ray.direction.x != 0 || ray.direction.y != 0 || ray.direction.z != 0;
   return IsFinite(ray.origin) && IsFinite(ray.direction) && has_direction && ray.t_min <= ray.t_max;
 }

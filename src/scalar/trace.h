@@ -23,8 +23,9 @@ struct SphereHit {
 
 // The first root of one sphere in [t_min, t_max]; the source sphere shows its far root or nothing.
 template <typename Real>
-std::optional<SphereHit<Real>> HitSphere(const Ray<Real>& ray, const SphereArrays<Real>& spheres,
-                                         std::uint32_t i) {
+SHEAF_INLINE std::optional<SphereHit<Real>> HitSphere(const Ray<Real>& ray,
+                                                      const SphereArrays<Real>& spheres,
+                                                      std::uint32_t i) {
   const std::uint32_t id = spheres.id[i];
   if (ray.source == id) return std::nullopt;
   const auto roots = IntersectSphere(
@@ -49,15 +50,16 @@ Vec3<Real> TriangleVertex(const TriangleArrays<Real>& triangles, std::uint32_t i
 
 // The hit of one triangle in [t_min, t_max]; the source triangle is never hit.
 template <typename Real>
-std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray, const TriangleShear<Real>& shear,
-                                             const TriangleArrays<Real>& triangles,
-                                             std::uint32_t i) {
+SHEAF_INLINE std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray,
+                                                          const TriangleShear<Real>& shear,
+                                                          const TriangleArrays<Real>& triangles,
+                                                          std::uint32_t i) {
   if ((ray.source & ~kInsideBit) == triangles.id[i]) return std::nullopt;
   const Vec3<Real> vertices[3] = {TriangleVertex(triangles, i, 0), TriangleVertex(triangles, i, 1),
                                   TriangleVertex(triangles, i, 2)};
   const auto hit = IntersectTriangle(ray.origin, shear, vertices);
   if (!hit || !(ray.t_min <= hit->t && hit->t <= ray.t_max)) return std::nullopt;
-  return hit;
+  return TriangleHit<Real>{hit->t, hit->u, hit->v};
 }
 
 // Equal t: the lowest primitive id wins, so that the order of tests cannot change a picture.

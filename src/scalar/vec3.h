@@ -7,6 +7,11 @@
 
 #include <cmath>
 
+// On functions that return an optional in an inner loop: left to themselves, compilers pass it
+// through memory, where loading it whole after storing its parts stalls (a tenth of a scalar
+// frame). The baseline is meant to be fast.
+#define SHEAF_INLINE [[gnu::always_inline]] inline
+
 namespace sheaf::scalar {
 
 // The type in which a quantity is computed whose rounding error in Real would show.
