@@ -78,6 +78,31 @@ HWY_INLINE hn::Vec<D> GatherAt(D d, const hn::TFromD<D>* HWY_RESTRICT array, V i
   return hn::GatherIndex(d, array, hn::BitCast(hn::RebindToSigned<D>(), ids));
 }
 
+// Elements of arrays at the ids of one vector. Ids that follow one another, as those of
+// neighbouring rays mostly do, are loaded as one piece; ids that are all the same, as those of what
+// such rays hit, as one number.
+enum class IdPattern { kRun, kSame, kAny };
+
+// `ids` points at the ids of `lanes` lanes, of which the first `wanted` count.
+HWY_INLINE IdPattern PatternOf(const std::uint32_t* ids, std::uint32_t lanes,
+                               std::uint32_t wanted) {
+  if (wanted < lanes) return IdPattern::kAny;
+  std::uint32_t same = 1, run = 1;
+  for (std::uint32_t lane = 1; lane < lanes; ++lane) {
+    same &= ids[lane] == ids[0] ? 1u : 0u;
+    run &= ids[lane] == ids[0] + lane ? 1u : 0u;
+  }
+  return same ? IdPattern::kSame : run ? IdPattern::kRun : IdPattern::kAny;
+}
+
+template <class D, class V>
+HWY_INLINE hn::Vec<D> Fetch(D d, IdPattern pattern, const hn::TFromD<D>* HWY_RESTRICT array,
+                            std::uint32_t first, V ids) {
+  if (pattern == IdPattern::kRun) return hn::LoadU(d, array + first);
+  if (pattern == IdPattern::kSame) return hn::Set(d, array[first]);
+  return GatherAt(d, array, ids);
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Dot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));

@@ -24,18 +24,26 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
     const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
     const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
-    const auto direction_x = GatherAt(dn, rays.direction_x, ray);
-    const auto direction_y = GatherAt(dn, rays.direction_y, ray);
-    const auto direction_z = GatherAt(dn, rays.direction_z, ray);
-    const auto leaves = hn::Ne(GatherAt(dn, hits.u, ray), hn::Zero(dn));
+    const std::uint32_t wanted = batch.count - i;
+    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
+    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
+    const auto of_ray = [&](const Real* array)
+                            HWY_ATTR { return Fetch(dn, ray_pattern, array, batch.ray[i], ray); };
+    const auto of_local = [&](const Real* array) HWY_ATTR {
+      return Fetch(dn, local_pattern, array, batch.local[i], local);
+    };
+    const auto direction_x = of_ray(rays.direction_x);
+    const auto direction_y = of_ray(rays.direction_y);
+    const auto direction_z = of_ray(rays.direction_z);
+    const auto leaves = hn::Ne(of_ray(hits.u), hn::Zero(dn));
 
-    const auto cx = Widen(GatherAt(dn, spheres.center_x, local));
-    const auto cy = Widen(GatherAt(dn, spheres.center_y, local));
-    const auto cz = Widen(GatherAt(dn, spheres.center_z, local));
-    const auto r = Widen(GatherAt(dn, spheres.radius, local));
-    const auto fx = hn::Sub(Widen(GatherAt(dn, rays.origin_x, ray)), cx);
-    const auto fy = hn::Sub(Widen(GatherAt(dn, rays.origin_y, ray)), cy);
-    const auto fz = hn::Sub(Widen(GatherAt(dn, rays.origin_z, ray)), cz);
+    const auto cx = Widen(of_local(spheres.center_x));
+    const auto cy = Widen(of_local(spheres.center_y));
+    const auto cz = Widen(of_local(spheres.center_z));
+    const auto r = Widen(of_local(spheres.radius));
+    const auto fx = hn::Sub(Widen(of_ray(rays.origin_x)), cx);
+    const auto fy = hn::Sub(Widen(of_ray(rays.origin_y)), cy);
+    const auto fz = hn::Sub(Widen(of_ray(rays.origin_z)), cz);
     const auto dx = Widen(direction_x), dy = Widen(direction_y), dz = Widen(direction_z);
     auto near = hn::Zero(dw), far = hn::Zero(dw);
     SphereRoots(dw, fx, fy, fz, dx, dy, dz, r, near, far);

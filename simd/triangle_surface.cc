@@ -25,17 +25,24 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
     const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
-    const auto direction_x = GatherAt(dn, rays.direction_x, ray);
-    const auto direction_y = GatherAt(dn, rays.direction_y, ray);
-    const auto direction_z = GatherAt(dn, rays.direction_z, ray);
-    const W w1 = Widen(GatherAt(dn, hits.u, ray)), w2 = Widen(GatherAt(dn, hits.v, ray));
+    const std::uint32_t wanted = batch.count - i;
+    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
+    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
+    const auto of_ray = [&](const Real* array)
+                            HWY_ATTR { return Fetch(dn, ray_pattern, array, batch.ray[i], ray); };
+    const auto of_local = [&](const Real* array) HWY_ATTR {
+      return Fetch(dn, local_pattern, array, batch.local[i], local);
+    };
+    const auto direction_x = of_ray(rays.direction_x);
+    const auto direction_y = of_ray(rays.direction_y);
+    const auto direction_z = of_ray(rays.direction_z);
+    const W w1 = Widen(of_ray(hits.u)), w2 = Widen(of_ray(hits.v));
     const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
     const auto mean = [&](W a, W b, W c) HWY_ATTR {
       return hn::Add(hn::Add(hn::Mul(a, w0), hn::Mul(b, w1)), hn::Mul(c, w2));
     };
-    const auto vertex = [&](int number, int axis) HWY_ATTR {
-      return Widen(GatherAt(dn, triangles.vertex[number][axis], local));
-    };
+    const auto vertex = [&](int number, int axis)
+                            HWY_ATTR { return Widen(of_local(triangles.vertex[number][axis])); };
     const W ax = vertex(0, 0), ay = vertex(0, 1), az = vertex(0, 2);
     const W bx = vertex(1, 0), by = vertex(1, 1), bz = vertex(1, 2);
     const W cx = vertex(2, 0), cy = vertex(2, 1), cz = vertex(2, 2);
@@ -69,9 +76,8 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     hn::StoreU(direction_y, dn, surfaces.direction_y + i);
     hn::StoreU(direction_z, dn, surfaces.direction_z + i);
     const auto surface_coordinate = [&](int axis) HWY_ATTR {
-      const auto at = [&](int number) HWY_ATTR {
-        return Widen(GatherAt(dn, triangles.uv[number][axis], local));
-      };
+      const auto at = [&](int number)
+                          HWY_ATTR { return Widen(of_local(triangles.uv[number][axis])); };
       return Narrow<Real>(mean(at(0), at(1), at(2)));
     };
     hn::StoreU(surface_coordinate(0), dn, surfaces.u + i);

@@ -1,6 +1,7 @@
 #include "src/render/bin_hits.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sheaf {
 
@@ -10,17 +11,21 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     ray_.Allocate(StreamCapacity(count));
     local_.Allocate(StreamCapacity(count));
     primitive_.Allocate(StreamCapacity(count));
-    keys_.resize(count);
   }
+  // Neighbouring rays mostly hit the same primitive, so that a run of them costs one look-up.
   std::fill(counts_.begin(), counts_.end(), 0u);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::uint32_t key = 0;
-    if (hit_primitives[i] != kNoPrimitive) {
-      const PrimitiveInfo& info = primitives[hit_primitives[i]];
-      key = 1 + 2 * info.material + (info.local & kTriangleBit ? 1 : 0);
+  runs_.clear();
+  for (std::uint32_t i = 0; i < count;) {
+    const std::uint32_t first = i, primitive = hit_primitives[i];
+    while (i < count && hit_primitives[i] == primitive) ++i;
+    Run run{first, i - first, primitive, 0, 0};
+    if (primitive != kNoPrimitive) {
+      const PrimitiveInfo& info = primitives[primitive];
+      run.key = 1 + 2 * info.material + (info.local & kTriangleBit ? 1 : 0);
+      run.local = info.local & ~kTriangleBit;
     }
-    keys_[i] = key;
-    ++counts_[key];
+    counts_[run.key] += run.size;
+    runs_.push_back(run);
   }
 
   bins_.clear();
@@ -37,12 +42,12 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     counts_[key] = first;
     first += size;
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t at = counts_[keys_[i]]++;
-    ray_[at] = i;
-    if (keys_[i] == 0) continue;
-    primitive_[at] = hit_primitives[i];
-    local_[at] = primitives[hit_primitives[i]].local & ~kTriangleBit;
+  for (const Run& run : runs_) {
+    const std::uint32_t at = counts_[run.key];
+    counts_[run.key] += run.size;
+    std::iota(ray_.data() + at, ray_.data() + at + run.size, run.first);
+    std::fill_n(primitive_.data() + at, run.size, run.primitive);
+    std::fill_n(local_.data() + at, run.size, run.local);
   }
 }
 

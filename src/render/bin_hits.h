@@ -33,8 +33,13 @@ class HitBinner {
   std::span<const std::uint32_t> missed_rays() const { return missed_rays_; }
 
  private:
+  // Consecutive rays that hit the same primitive.
+  struct Run {
+    std::uint32_t first, size, primitive, key, local;
+  };
+
   std::vector<std::uint32_t> counts_;  // by key: 0 for misses, then 1 + 2 * material + shape
-  std::vector<std::uint32_t> keys_;    // by ray
+  std::vector<Run> runs_;
   AlignedArray<std::uint32_t> ray_, local_, primitive_;
   std::vector<HitBin> bins_;
   std::span<const std::uint32_t> missed_rays_;

@@ -55,8 +55,8 @@ enum class Phase {
 };
 const char* PhaseName(Phase phase);  // lower case, e.g. "trace"
 
-// Reflected and refracted rays are counted where they are spawned. Of these, `beyond_depth` are deeper than
-// the limit: black, and not traced.
+// Reflected and refracted rays are counted where they are spawned. Of these, `beyond_depth` are
+// deeper than the limit: black, and not traced.
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
   std::uint64_t beyond_depth = 0;

@@ -33,24 +33,12 @@ std::uint32_t EvenBits(std::uint32_t code) {
 template <typename Real>
 void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
   OrderPixels(tile);
-  auto pixels = pixels_.output();
-  ForEachField(pixels, [&](Real* channel) { std::fill_n(channel, pixel_count_, Real(0)); });
   const std::size_t samples = frame_.sample_x.size();
   for (std::size_t i = 0; i < samples; ++i) {
     RenderSample(frame_.sample_x[i], frame_.sample_y[i]);
-    auto sample = sample_.view();
-    ForEachField(pixels, sample, [&](Real* sum, const Real* channel) {
-      for (std::uint32_t pixel = 0; pixel < pixel_count_; ++pixel) sum[pixel] += channel[pixel];
-    });
+    if (samples > 1) AddSample(i);
   }
-  for (std::uint32_t i = 0; i < pixel_count_; ++i) {
-    float* rgb =
-        film.pixel(static_cast<int>(pixel_x_[i]) - film_x, static_cast<int>(pixel_y_[i]) - film_y);
-    rgb[0] = static_cast<float>(pixels.r[i] / static_cast<Real>(samples));
-    rgb[1] = static_cast<float>(pixels.g[i] / static_cast<Real>(samples));
-    rgb[2] = static_cast<float>(pixels.b[i] / static_cast<Real>(samples));
-  }
-  Charge(Phase::kAccumulate);
+  WritePixels(samples, film_x, film_y, film);
 }
 
 template <typename Real>
@@ -204,6 +192,36 @@ void TileRenderer<Real>::Accumulate(const RayBundle<Real>& bundle) {
     sample.r[pixel] += paths.weight_r[i] * colours.r[i];
     sample.g[pixel] += paths.weight_g[i] * colours.g[i];
     sample.b[pixel] += paths.weight_b[i] * colours.b[i];
+  }
+  Charge(Phase::kAccumulate);
+}
+
+template <typename Real>
+void TileRenderer<Real>::AddSample(std::size_t index) {
+  auto pixels = pixels_.output();
+  auto sample = sample_.view();
+  ForEachField(pixels, sample, [&](Real* sum, const Real* channel) {
+    if (index == 0) std::fill_n(sum, pixel_count_, Real(0));
+    for (std::uint32_t i = 0; i < pixel_count_; ++i) sum[i] += channel[i];
+  });
+  Charge(Phase::kAccumulate);
+}
+
+// The only sample of a pixel is its mean already.
+template <typename Real>
+void TileRenderer<Real>::WritePixels(std::size_t samples, int film_x, int film_y, Film& film) {
+  const auto mean = samples > 1 ? pixels_.output() : sample_.output();
+  if (samples > 1) {
+    ForEachField(mean, [&](Real* channel) {
+      for (std::uint32_t i = 0; i < pixel_count_; ++i) channel[i] /= static_cast<Real>(samples);
+    });
+  }
+  for (std::uint32_t i = 0; i < pixel_count_; ++i) {
+    float* rgb =
+        film.pixel(static_cast<int>(pixel_x_[i]) - film_x, static_cast<int>(pixel_y_[i]) - film_y);
+    rgb[0] = static_cast<float>(mean.r[i]);
+    rgb[1] = static_cast<float>(mean.g[i]);
+    rgb[2] = static_cast<float>(mean.b[i]);
   }
   Charge(Phase::kAccumulate);
 }

@@ -42,6 +42,8 @@ class TileRenderer {
   void FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children, std::uint32_t first,
                    int depth, int spawning_bins);
   void Accumulate(const RayBundle<Real>& bundle);
+  void AddSample(std::size_t index);
+  void WritePixels(std::size_t samples, int film_x, int film_y, Film& film);
   void Reserve(std::uint32_t count);
   void StartClock();
   void Charge(Phase phase);
