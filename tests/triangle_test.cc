@@ -27,8 +27,6 @@ using Exact = __float128;  // float products and their sums without a rounding t
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Highway stops at 16 lanes of float; two batches and one ray show every tail.
-constexpr std::uint32_t kNoSource = kNoPrimitive;
 
 Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }
@@ -73,7 +71,7 @@ int CountKernelLeaks(const GeometryView<float>& geometry, const std::vector<Ray<
   const auto out = stream.output();
   for (std::uint32_t i = 0; i < count; ++i) {
     out.origin_x[i] = rays[i].origin.x, out.origin_y[i] = rays[i].origin.y;
-    out.origin_z[i] = rays[i].origin.z, out.source[i] = kNoSource;
+    out.origin_z[i] = rays[i].origin.z, out.source[i] = kNoPrimitive;
     out.direction_x[i] = rays[i].direction.x, out.direction_y[i] = rays[i].direction.y;
     out.direction_z[i] = rays[i].direction.z;
   }
@@ -148,7 +146,7 @@ TEST_CASE("oblique rays at edges and vertices of an integer grid") {
     };
     // Integer origins and targets: the rays meet vertices, diagonals and edges exactly.
     const Vec3<float> origin{integer(-20, 20), integer(-20, 20), integer(1, 20)};
-    const Vec3<float> target{integer(-8, 8) / 2, integer(-8, 8) / 2, 0};
+    const Vec3<float> target{integer(-7, 7) / 2, integer(-7, 7) / 2, 0};  // not the border
     rays.push_back({origin, target - origin});
   }
   CheckNoLeaks(mesh, rays, 1.0001f);
@@ -192,8 +190,6 @@ TEST_CASE("collinear vertices are missed") {
   const CompiledScene<float> scene = mesh.Compile();
   CHECK(scalar::TraceClosest(scene.geometry(), ray).primitive == kNoPrimitive);
   CHECK_FALSE(scalar::TraceOccluded(scene.geometry(), ray));
-  const auto hit = Intersect(ray, a, b, c);
-  CHECK_FALSE((hit && hit->t >= ray.t_min && hit->t <= ray.t_max));
 }
 
 TEST_CASE("triangles without area are missed and make no NaN") {
@@ -402,41 +398,40 @@ Mesh Icosphere(int levels, double radius) {
   return mesh;
 }
 
-// Rays at vertices, at the middles of edges and at random points of edges; from `origin` those that
-// look at the sphere's near side from its outside are kept, or all where it is inside.
-std::vector<Ray<float>> RaysAtEdges(Random& random, const Mesh& mesh, Vec3<float> centre,
-                                    std::uint32_t count) {
+// Rays at vertices, at the middles of edges and at random points of edges, from inside and outside.
+// Outside, what the ray aims at must face it more steeply than neighbouring triangles are bent.
+std::vector<Ray<float>> RaysAtEdges(Random& random, const Mesh& mesh, std::uint32_t count) {
   std::vector<Ray<float>> rays;
   while (rays.size() < count) {
     const auto grid = [&](double extent) {
       return static_cast<float>(std::round(Uniform(random, -extent, extent) * 0x1p20) * 0x1p-20);
     };
-    const bool inside = rays.size() % 2 == 0;
-    const double extent = inside ? 0.5 : 3;
+    const bool is_inside = rays.size() % 2 == 0;
+    const double extent = is_inside ? 0.5 : 3;
     Vec3<float> origin{grid(extent), grid(extent), grid(extent)};
     if (rays.size() % 16 == 0) origin = {0, 0, 0};
-    if (!inside && scalar::Dot(origin, origin) < 2) continue;
-    origin = origin + centre;
+    if (!is_inside && scalar::Dot(origin, origin) < 2) continue;
     const auto& triangle = mesh.triangles[random() % mesh.triangles.size()];
     const Vec3<float> a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]];
     const std::uint64_t kind = random() % 3;
     const float along = kind == 0   ? 0
                         : kind == 1 ? 0.5f
                                     : static_cast<float>(Uniform(random, 0, 1));
-    const Vec3<float> target = a + (b - a) * along;
-    const Vec3<float> direction = target - origin, out = target - centre;
-    const float facing = scalar::Dot(scalar::Normalize(direction), scalar::Normalize(out));
-    if (!inside && facing > -0.1f) continue;
+    const Vec3<float> target = a + (b - a) * along, direction = target - origin;
+    const float facing = scalar::Dot(scalar::Normalize(direction), scalar::Normalize(target));
+    if (!is_inside && facing > -0.4f) continue;
     rays.push_back({origin, direction});
   }
   return rays;
 }
 
+// t_max keeps the far side out of reach.
 TEST_CASE("a closed sphere mesh does not leak at vertices and edges, from inside and outside") {
   Random random(35);
-  CheckNoLeaks(Icosphere(4, 1), RaysAtEdges(random, Icosphere(4, 1), {0, 0, 0}, 4000), 1.001f);
-  const Mesh coarse = Icosphere(2, 1);
-  CheckNoLeaks(coarse, RaysAtEdges(random, coarse, {0, 0, 0}, 40000), 1.001f);
+  for (const auto& [levels, count] : {std::pair{4, 4000u}, {2, 40000u}}) {
+    const Mesh mesh = Icosphere(levels, 1);
+    CheckNoLeaks(mesh, RaysAtEdges(random, mesh, count), 1.001f);
+  }
 }
 
 // Where floats are a 64th apart the mesh is rough, but still closed.
@@ -444,7 +439,6 @@ TEST_CASE("a sphere mesh far from the origin does not leak") {
   Random random(36);
   const Vec3<float> far{148376, 1234, -223423};
   Mesh mesh = Icosphere(2, 1);
-  const std::vector<Ray<float>> near_rays = RaysAtEdges(random, mesh, {0, 0, 0}, 1);
   for (auto& v : mesh.vertices) v = v * 2.0f + far;
   std::vector<Ray<float>> rays;
   for (int i = 0; i < 20000; ++i) {
@@ -500,8 +494,6 @@ TEST_CASE("perturbed spheres are hit at every vertex") {
   }
 }
 
-// ---- Numbers
-
 struct ExactHit {
   Exact t;
   Vec3<Exact> point;
@@ -526,9 +518,11 @@ double UlpsOff(float got, Exact exact) {
          std::ldexp(1.0, exponent - 24);
 }
 
-TEST_CASE("t is within 8 ULP away from grazing, and the barycentrics reproduce the point") {
+// What is rounded are vertices seen from the origin: their reach over the length of the path is the
+// problem's own condition, 1 to 2 from a distance and large right before a large triangle.
+TEST_CASE("away from grazing t is within 8 ULP times reach over path, and so is the point") {
   Random random(37);
-  double worst_t = 0, worst_point = 0;
+  double worst_t = 0, worst_from_afar = 0, worst_point = 0;
   int hits = 0;
   while (hits < 300000) {
     const double size = std::exp2(Uniform(random, -8, 4)), away = std::exp2(Uniform(random, -2, 8));
@@ -547,20 +541,23 @@ TEST_CASE("t is within 8 ULP away from grazing, and the barycentrics reproduce t
     const ExactHit exact = IntersectExactly(ray, v);
     if (!hit || exact.cosine < 0.5) continue;
     ++hits;
-    worst_t = std::max(worst_t, UlpsOff(hit->t, exact.t));
-    // The point is off by roundoffs of the distance it was seen from and of where that is.
+    const auto length = [](Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); };
+    const double path = length(exact.point.To<double>() - origin.To<double>());
+    double reach = path;
+    for (const Vec3<float> p : v) reach = std::max(reach, length((p - origin).To<double>()));
+    worst_t = std::max(worst_t, UlpsOff(hit->t, exact.t) * path / reach);
+    if (reach < 1.5 * path) worst_from_afar = std::max(worst_from_afar, UlpsOff(hit->t, exact.t));
     const Exact u = hit->u, s = hit->v;
     const Vec3<Exact> point =
         v[0].To<Exact>() * (1 - u - s) + v[1].To<Exact>() * u + v[2].To<Exact>() * s - exact.point;
-    const double off = std::sqrt(static_cast<double>(scalar::Dot(point, point)));
-    const Vec3<double> path = exact.point.To<double>() - origin.To<double>();
-    worst_point = std::max(worst_point, off / (std::sqrt(scalar::Dot(path, path)) * 0x1p-24));
+    worst_point = std::max(worst_point, length(point.To<double>()) / (reach * 0x1p-24));
     REQUIRE((hit->u >= 0 && hit->v >= 0));
     REQUIRE(hit->u + hit->v <= 1 + 0x1p-22f);
   }
-  MESSAGE("largest error of t: ", worst_t, " ULP; of the point: ", worst_point,
-          " roundoffs of its distance");
+  MESSAGE("largest error of t: ", worst_t, " ULP times reach over path; ", worst_from_afar,
+          " ULP where reach < 1.5 path; of the point: ", worst_point, " roundoffs of the reach");
   CHECK(worst_t <= 8);
+  CHECK(worst_from_afar <= 8);
   CHECK(worst_point <= 16);
 }
 
@@ -598,7 +595,7 @@ TEST_CASE("intervals include their ends, and what is no number misses") {
     return closest;
   };
   const auto between = [&](float t_min, float t_max) {
-    return hits({{0, 0, 0}, {0, 0, 1}, kNoSource, t_min, t_max});
+    return hits({{0, 0, 0}, {0, 0, 1}, kNoPrimitive, t_min, t_max});
   };
   const float after = std::nextafter(4.0f, 5.0f), before = std::nextafter(4.0f, 3.0f);
   CHECK(between(4, 4));

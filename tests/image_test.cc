@@ -1,0 +1,334 @@
+// Whole pictures: against POV-Ray, against double precision, and against themselves bit by bit.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "random_scene.h"
+#include "src/formats/picture.h"
+#include "src/formats/png.h"
+#include "src/formats/scene_json.h"
+#include "src/render/render.h"
+#include "targets.h"
+
+namespace sheaf {
+namespace {
+
+Scene CrystalBall() {
+  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/crystal-ball.json");
+  REQUIRE(scene.ok());
+  return std::move(scene).value();
+}
+
+Film RenderOrFail(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                  RenderStats* stats = nullptr) {
+  Result<Film> film = Render(scene, camera, options, stats);
+  REQUIRE(film.ok());
+  return std::move(film).value();
+}
+
+// ---- Against other arithmetic and another renderer
+// ------------------------------------------------
+
+struct Difference {
+  int pixels_over = 0;  // that differ by more than 1/255 in a channel
+  double psnr = 0;      // dB
+};
+
+Difference Compare(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  REQUIRE(a.size() == b.size());
+  Difference difference;
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); i += 3) {
+    int largest = 0;
+    for (std::size_t channel = i; channel < i + 3; ++channel) {
+      const int error = std::abs(static_cast<int>(a[channel]) - static_cast<int>(b[channel]));
+      squares += error * error;
+      largest = std::max(largest, error);
+    }
+    difference.pixels_over += largest > 1;
+  }
+  difference.psnr = 10 * std::log10(255.0 * 255.0 * static_cast<double>(a.size()) / squares);
+  return difference;
+}
+
+void CheckClose(const std::string& camera, const std::string& oracle,
+                const Difference& difference) {
+  MESSAGE(camera << " against " << oracle << ": " << difference.pixels_over
+                 << " pixels over 1/255, " << difference.psnr << " dB");
+  CHECK(difference.pixels_over <= 12);
+  CHECK(difference.psnr >= 50);
+}
+
+std::vector<std::uint8_t> RenderView(const Scene& scene, const Camera& camera,
+                                     Precision precision) {
+  RenderOptions options;
+  options.precision = precision;
+  return QuantizeTo8Bit(RenderOrFail(scene, camera, options), Transfer::kLinear);
+}
+
+std::vector<std::uint8_t> ReadPixels(const std::string& path) {
+  Result<Picture8> picture = ReadPng(path);
+  REQUIRE(picture.ok());
+  return std::move(picture).value().rgb;
+}
+
+TEST_CASE("every view is close to double precision") {
+  const Scene scene = CrystalBall();
+  REQUIRE(scene.cameras.size() == 7);
+  for (const Camera& camera : scene.cameras) {
+    CheckClose(camera.name, "double precision",
+               Compare(RenderView(scene, camera, Precision::kStrict),
+                       RenderView(scene, camera, Precision::kDouble)));
+  }
+}
+
+TEST_CASE("every view is close to the stored double-precision pictures") {
+  const Scene scene = CrystalBall();
+  for (const Camera& camera : scene.cameras) {
+    CheckClose(camera.name, "the stored picture",
+               Compare(RenderView(scene, camera, Precision::kStrict),
+                       ReadPixels(SHEAF_SOURCE_DIR "/tests/reference/" + camera.name + ".png")));
+  }
+}
+
+TEST_CASE("every view is close to POV-Ray's") {
+  if (std::system("command -v povray >/dev/null 2>&1") != 0) {
+    MESSAGE("skipped: povray is not installed");
+    return;
+  }
+  const Scene scene = CrystalBall();
+  for (const Camera& camera : scene.cameras) {
+    const std::string picture =
+        (std::filesystem::current_path() / ("povray-" + camera.name + ".png")).string();
+    const std::string command =
+        "povray +I'" SHEAF_SOURCE_DIR
+        "/tests/reference/crystal-ball.pov' +W640 +H480 -A -D +WT1 "
+        "File_Gamma=1.0 Declare=EX=" +
+        std::to_string(camera.eye.x) + " Declare=EY=" + std::to_string(camera.eye.y) +
+        " Declare=EZ=" + std::to_string(camera.eye.z) + " +O'" + picture + "' >/dev/null 2>&1";
+    REQUIRE(std::system(command.c_str()) == 0);
+    CheckClose(camera.name, "POV-Ray",
+               Compare(RenderView(scene, camera, Precision::kStrict), ReadPixels(picture)));
+  }
+}
+
+// Counted by an independent tracer in double precision; floats may decide a few rays differently.
+TEST_CASE("ray counts at 1280x960") {
+  struct Counts {
+    double shadow, reflected;
+  };
+  const std::map<std::string, Counts> expected = {
+      {"front", {1078792, 477636}}, {"up", {1166656, 322236}},   {"down", {687425, 466950}},
+      {"left", {888718, 346158}},   {"right", {923242, 382194}}, {"near", {2281924, 1302936}},
+      {"far", {298985, 151710}}};
+  const Scene scene = CrystalBall();
+  RenderOptions options;
+  options.width = 1280;
+  options.height = 960;
+  for (const Camera& camera : scene.cameras) {
+    CAPTURE(camera.name);
+    RenderStats stats;
+    RenderOrFail(scene, camera, options, &stats);
+    const auto near = [](std::uint64_t got, double want) {
+      return std::abs(static_cast<double>(got) - want) <= 0.0005 * want;
+    };
+    CHECK(stats.rays.primary == 1280 * 960);
+    CHECK(near(stats.rays.shadow, expected.at(camera.name).shadow));
+    CHECK(near(stats.rays.reflected, expected.at(camera.name).reflected));
+    CHECK(stats.rays.refracted == stats.rays.reflected);
+  }
+}
+
+// ---- The same bits
+// ---------------------------------------------------------------------------------
+
+int PixelsThatDiffer(const Film& a, const Film& b) {
+  REQUIRE(a.width == b.width);
+  REQUIRE(a.height == b.height);
+  int differing = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      differing += std::memcmp(a.pixel(x, y), b.pixel(x, y), 3 * sizeof(float)) != 0;
+    }
+  }
+  return differing;
+}
+
+bool IsFinite(const Film& film) {
+  return std::all_of(film.rgb.begin(), film.rgb.end(), [](float x) { return std::isfinite(x); });
+}
+
+// A scene with everything at once: several mirrors and glasses, so that several materials spawn
+// rays at one depth, triangles seen from both sides, every kind of light, overlapping and
+// coincident objects.
+Scene EverythingScene(std::uint64_t seed) {
+  Random random(seed);
+  Scene scene = RandomScene(random, 14);
+  const auto colour = [&] { return UniformPoint(random, 0, 1); };
+  scene.materials.clear();
+  for (int i = 0; i < 6; ++i) {
+    Material material;
+    material.name = std::to_string(i);
+    if (i % 2) {
+      material.base_colour = Checker{colour(), colour(), {Uniform(random, 1, 9), 5}};
+    } else {
+      material.base_colour = colour();
+    }
+    material.ambient = 0.2;
+    material.kd = i == 4 ? 0 : 0.6;
+    material.ks = i == 3 ? 0 : 0.4;
+    material.shininess = i == 2 ? 11.1434 : 60;
+    if (i == 1 || i == 4) material.reflect = colour() * 0.7;
+    if (i >= 4) material.transmit = colour() * 0.8;
+    material.ior = i == 4 ? 1.5 : 0.8;
+    scene.materials.push_back(material);
+  }
+  for (Object& object : scene.objects) object.material = static_cast<std::uint32_t>(random() % 6);
+  scene.lights = {{"near", PointLight{UniformPoint(random, -6, 6), {0, 0, 1}}, {1, 1, 0.9}, 20},
+                  {"far", PointLight{{3000, 4000, 5000}, {1, 0, 0}}, {0.5, 0.6, 1}, 0.5},
+                  {"general", PointLight{{2, 7, 3}, {1, 0.1, 0.01}}, {1, 0.5, 0.5}, 1},
+                  {"sun", DirectionalLight{{-1, -2, -3}}, {0.3, 0.3, 0.3}, 1},
+                  {"soft", DirectionalLight{{1, -1, 0.5}}, {0.2, 0.2, 0.2}, 1, false}};
+  scene.settings.background = {0.1, 0.2, 0.3};
+  Camera camera{"eye", UniformPoint(random, 7, 9), {0, 0, 0}, {0, 1, 0}, Perspective{50}};
+  Camera flat{"flat", {0, 0, 9}, {0, 0, 0}, {0, 1, 0}, Orthographic{9}};
+  Camera inside{"inside", {0.1, 0.2, 0.1}, {3, 1, 0}, {0, 1, 0}, Perspective{90}};
+  scene.cameras = {camera, flat, inside};
+  return scene;
+}
+
+// Renders on every target, with 1 and 2 threads, in tiles of several sizes and as crops, and
+// compares with the scalar baseline.
+void CheckSameBits(const Scene& scene, const Camera& camera, RenderOptions options) {
+  options.engine = Engine::kScalar;
+  RenderStats scalar_stats;
+  const Film scalar = RenderOrFail(scene, camera, options, &scalar_stats);
+  REQUIRE(scalar_stats.target == "scalar");
+  CHECK(IsFinite(scalar));
+  options.engine = Engine::kSimd;
+  ForEachTarget([&](const std::string& name) {
+    for (const int threads : {1, 2}) {
+      for (const int tile : {32, 7, 64}) {
+        options.threads = threads;
+        options.tile_size = tile;
+        RenderStats stats;
+        const Film film = RenderOrFail(scene, camera, options, &stats);
+        CHECK(PixelsThatDiffer(film, scalar) == 0);
+        CHECK(stats.target == name);
+        CHECK(stats.rays.shadow == scalar_stats.rays.shadow);
+        CHECK(stats.rays.reflected == scalar_stats.rays.reflected);
+        CHECK(stats.rays.refracted == scalar_stats.rays.refracted);
+        CHECK(stats.rays.beyond_depth == scalar_stats.rays.beyond_depth);
+      }
+    }
+    RenderOptions cropped = options;
+    for (const PixelRect& crop : {PixelRect{0, 0, 1, 1}, PixelRect{13, 5, 50, 44},
+                                  PixelRect{options.width - 3, 0, options.width, options.height}}) {
+      cropped.crop = crop;
+      const Film film = RenderOrFail(scene, camera, cropped);
+      Film part(crop.width(), crop.height());
+      for (int y = 0; y < part.height; ++y) {
+        std::copy_n(scalar.pixel(crop.x0, crop.y0 + y), 3 * part.width, part.pixel(0, y));
+      }
+      CHECK(PixelsThatDiffer(film, part) == 0);
+    }
+  });
+}
+
+TEST_CASE("the crystal ball has the same bits on every target") {
+  const Scene scene = CrystalBall();
+  RenderOptions options;
+  options.width = 160;
+  options.height = 120;
+  for (const Camera& camera : scene.cameras) {
+    CAPTURE(camera.name);
+    CheckSameBits(scene, camera, options);
+  }
+}
+
+TEST_CASE("the front view at full size has the same bits on every target") {
+  const Scene scene = CrystalBall();
+  RenderOptions options;
+  options.engine = Engine::kScalar;
+  const Film scalar = RenderOrFail(scene, scene.cameras[0], options);
+  options.engine = Engine::kSimd;
+  ForEachTarget([&](const std::string&) {
+    CHECK(PixelsThatDiffer(RenderOrFail(scene, scene.cameras[0], options), scalar) == 0);
+  });
+}
+
+TEST_CASE("scenes with everything have the same bits on every target") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    const Scene scene = EverythingScene(seed);
+    RenderOptions options;
+    options.width = 61;
+    options.height = 47;
+    options.samples = seed == 2 ? 3 : 1;
+    options.max_depth = seed == 3 ? 0 : 6;
+    for (const Precision precision : {Precision::kStrict, Precision::kDouble}) {
+      options.precision = precision;
+      for (const Camera& camera : scene.cameras) {
+        CAPTURE(camera.name);
+        CheckSameBits(scene, camera, options);
+      }
+    }
+  }
+}
+
+TEST_CASE("an empty scene shows its background, and nothing is lit without lights") {
+  Scene scene;
+  scene.settings.background = {0.25, 0.5, 0.75};
+  const Camera camera{"c", {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, Perspective{}};
+  RenderOptions options;
+  options.width = 53;
+  options.height = 53;
+  CheckSameBits(scene, camera, options);
+  Film film = RenderOrFail(scene, camera, options);
+  CHECK(film.pixel(9, 9)[0] == 0.25f);
+  CHECK(film.pixel(9, 9)[2] == 0.75f);
+
+  Material material;
+  material.base_colour = Colour(0.5);
+  material.ambient = 0.5;
+  material.kd = 1;
+  scene.materials = {material};
+  scene.objects = {{"", Sphere{{0, 0, 0}, 1}, 0}};
+  film = RenderOrFail(scene, camera, options);
+  CHECK(film.pixel(26, 26)[1] == 0.125f);  // ka * base * background
+}
+
+TEST_CASE("options out of range are refused") {
+  const Scene scene = CrystalBall();
+  const auto refused = [&](RenderOptions options) {
+    const Result<Film> film = Render(scene, scene.cameras[0], options);
+    return !film.ok() && film.error().kind == ErrorKind::kUsage;
+  };
+  RenderOptions options;
+  CHECK(!refused(options));
+  options.width = 0;
+  CHECK(refused(options));
+  options = {};
+  options.tile_size = kMaxTileSize + 1;
+  CHECK(refused(options));
+  options = {};
+  options.crop = PixelRect{0, 0, 641, 10};
+  CHECK(refused(options));
+  options.crop = PixelRect{5, 5, 5, 10};
+  CHECK(refused(options));
+}
+
+TEST_CASE("a stop that was asked for gives no film") {
+  const Scene scene = CrystalBall();
+  RenderProgress progress;
+  progress.stop = true;
+  const Result<Film> film = Render(scene, scene.cameras[0], {}, nullptr, &progress);
+  REQUIRE(!film.ok());
+  CHECK(film.error().kind == ErrorKind::kInterrupted);
+}
+
+}  // namespace
+}  // namespace sheaf
