@@ -279,6 +279,44 @@ TEST_CASE("scenes with everything have the same bits on every target") {
   }
 }
 
+// Two glasses and a mirror side by side, so that rays of one pixel leave different materials at one
+// depth: the order in which their children are added is then not that of the materials.
+Scene GlassAndMirrors() {
+  Random random(9);
+  Scene scene;
+  for (int i = 0; i < 3; ++i) {
+    Material material;
+    material.base_colour = UniformPoint(random, 0.2, 1);
+    material.ambient = 0.3;
+    material.kd = 0.3;
+    if (i < 2) material.transmit = Colour(0.9, 0.8, 0.7);
+    if (i > 0) material.reflect = Colour(0.1, 0.15, 0.2) * static_cast<double>(i);
+    material.ior = i == 0 ? 1.5 : 1.2;
+    scene.materials.push_back(material);
+  }
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = 0; z < 3; ++z) {
+        const auto material = static_cast<std::uint32_t>(random() % 3);
+        scene.objects.push_back({"", Sphere{{x * 0.9, y * 0.9, z * -0.9}, 0.5}, material});
+      }
+    }
+  }
+  scene.lights = {{"key", PointLight{{5, 8, 9}, {1, 0, 0}}, {1, 0.9, 0.8}, 1}};
+  scene.settings.background = {0.3, 0.4, 0.7};
+  scene.cameras = {{"c", {0.3, 0.2, 5}, {0, 0, 0}, {0, 1, 0}, Perspective{55}}};
+  return scene;
+}
+
+TEST_CASE("several materials that spawn rays at one depth have the same bits on every target") {
+  const Scene scene = GlassAndMirrors();
+  RenderOptions options;
+  options.width = 64;
+  options.height = 48;
+  options.max_depth = 7;
+  CheckSameBits(scene, scene.cameras[0], options);
+}
+
 TEST_CASE("an empty scene shows its background, and nothing is lit without lights") {
   Scene scene;
   scene.settings.background = {0.25, 0.5, 0.75};

@@ -151,8 +151,8 @@ void CheckGuard(const std::string& path, const std::string& text,
                                : "#ifndef " + guard + "\n#define " + guard + "\n";
   const bool has_define = text.find("#define " + guard + "\n") != std::string::npos;
   // Only comments may come before it.
-  const bool is_first =
-      text.find('#') == text.find(open) || text.find("\n#") + 1 == text.find(open);
+  const std::size_t first = StartsWith(text, "#") ? 0 : text.find("\n#") + 1;
+  const bool is_first = first == text.find(open);
   const bool has_end = EndsWith(text, "#endif  // " + guard + "\n");
   if (text.find(open) == std::string::npos || !is_first || !has_define || !has_end) {
     violations.push_back(path + " lacks the guard " + guard);
