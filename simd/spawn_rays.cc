@@ -11,23 +11,40 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-// src/scalar/spawn.h: how an interface splits light; `is_total` where all of it is reflected.
+// src/scalar/spawn.h: how an interface splits light, half a vector at a time; `is_total` where all
+// of it is reflected.
 template <class D, class M, class V = hn::Vec<D>>
 HWY_INLINE void FresnelSplit(D d, V eta, V cos_i, V& reflectance, V& cos_t, M& is_total) {
   using Real = hn::TFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
-  const V sin2 = hn::Mul(hn::Mul(eta, eta), hn::Sub(one, hn::Mul(cos_i, cos_i)));
-  const V k = hn::Sub(one, sin2);
-  const auto matched = hn::Eq(eta, one);
-  is_total = hn::AndNot(matched, hn::Not(hn::Gt(k, zero)));
-  cos_t = hn::IfThenZeroElse(is_total, hn::Sqrt(k));
-  const V eta_i = hn::Mul(eta, cos_i), eta_t = hn::Mul(eta, cos_t);
-  const V s = hn::Div(hn::Sub(eta_i, cos_t), hn::Add(eta_i, cos_t));
-  const V p = hn::Div(hn::Sub(cos_i, eta_t), hn::Add(cos_i, eta_t));
-  reflectance = hn::Div(hn::Add(hn::Mul(s, s), hn::Mul(p, p)), hn::Set(d, Real(2)));
-  reflectance = hn::IfThenElse(is_total, one, hn::IfThenZeroElse(matched, reflectance));
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const auto zero = hn::Zero(dw), one = hn::Set(dw, 1.0), two = hn::Set(dw, 2.0);
+  alignas(kAlignment) Real etas[kMaxLanes], cosines[kMaxLanes];
+  alignas(kAlignment) Real reflected[kMaxLanes], refracted_cosines[kMaxLanes];
+  hn::Store(eta, d, etas);
+  hn::Store(cos_i, d, cosines);
+  for (std::uint32_t lane = 0; lane < LaneCount(d); lane += LaneCount(dn)) {
+    const auto n = Widen(hn::Load(dn, etas + lane));
+    const auto c = Widen(hn::Load(dn, cosines + lane));
+    const auto sin2 = hn::Mul(hn::Mul(n, n), hn::Sub(one, hn::Mul(c, c)));
+    const auto k = hn::Sub(one, sin2);
+    const auto passes = hn::Gt(k, zero);
+    const auto root = hn::Sqrt(k);
+    const auto n_c = hn::Mul(n, c), n_t = hn::Mul(n, root);
+    const auto s = hn::Div(hn::Sub(n_c, root), hn::Add(n_c, root));
+    const auto p = hn::Div(hn::Sub(c, n_t), hn::Add(c, n_t));
+    const auto mean = hn::Div(hn::Add(hn::Mul(s, s), hn::Mul(p, p)), two);
+    hn::Store(Narrow<Real>(hn::IfThenElse(passes, mean, one)), dn, reflected + lane);
+    // A total reflection is marked by -1, and becomes 0 below.
+    hn::Store(Narrow<Real>(hn::IfThenElse(passes, root, hn::Neg(one))), dn,
+              refracted_cosines + lane);
+  }
+  const V cosine = hn::Load(d, refracted_cosines);
   // Matched indices let everything through unbent, without the rounding of the square root.
-  cos_t = hn::IfThenElse(matched, cos_i, cos_t);
+  const auto matched = hn::Eq(eta, hn::Set(d, Real(1)));
+  is_total = hn::AndNot(matched, hn::Lt(cosine, hn::Zero(d)));
+  reflectance = hn::IfThenZeroElse(matched, hn::Load(d, reflected));
+  cos_t = hn::IfThenElse(matched, cos_i, hn::IfThenZeroElse(is_total, cosine));
 }
 
 template <typename Real>

@@ -263,6 +263,14 @@ TEST_CASE("a ray in the triangle's plane is stable") {
     if (i % 3 == 1) {
       for (auto& p : v) p = {p.z, p.x, p.y};
     }
+    if (i % 3 == 2) {  // a slanted plane, which rounding leaves on either side
+      const auto slant = [](Vec3<float> p) {
+        return Vec3<float>{p.x, p.y, 0.3f * p.x - 0.7f * p.y + 0.1f};
+      };
+      for (auto& p : v) p = slant(p);
+      const Vec3<float> from = slant(ray.origin);
+      ray = {from, slant(ray.origin + ray.direction) - from};
+    }
     if (i % 6 == 0) ray.direction = v[1] - ray.origin;  // at a vertex
     const auto hit = Intersect(ray, v[0], v[1], v[2]);
     if (!hit) continue;
@@ -271,7 +279,7 @@ TEST_CASE("a ray in the triangle's plane is stable") {
     REQUIRE((hit->u >= 0 && hit->u <= 1));
     REQUIRE((hit->v >= 0 && hit->v <= 1));
   }
-  MESSAGE(hits, " hits of 50000");
+  CHECK(hits > 100);  // by rounding; each is finite
 }
 
 TEST_CASE("-0 traces as +0") {

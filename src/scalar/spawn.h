@@ -20,17 +20,21 @@ struct Split {
   bool is_total;
 };
 
-// `eta` is the index of refraction on the ray's side over that on the other side.
+// `eta` is the index of refraction on the ray's side over that on the other side. Computed wide:
+// near the critical angle k cancels, and a few roundoffs of float would decide between a ray and
+// none.
 template <typename Real>
 Split<Real> FresnelSplit(Real eta, Real cos_i) {
+  using W = Wide<Real>;
   // Matched indices let everything through unbent, without the rounding of the square root.
   if (eta == 1) return {0, cos_i, false};
-  const Real k = 1 - (eta * eta) * (1 - cos_i * cos_i);
+  const W n = static_cast<W>(eta), c = static_cast<W>(cos_i);
+  const W k = 1 - (n * n) * (1 - c * c);
   if (!(k > 0)) return {1, 0, true};
-  const Real cos_t = std::sqrt(k);
-  const Real s = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  const Real p = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  return {(s * s + p * p) / 2, cos_t, false};
+  const W cos_t = std::sqrt(k);
+  const W s = (n * c - cos_t) / (n * c + cos_t);
+  const W p = (c - n * cos_t) / (c + n * cos_t);
+  return {static_cast<Real>((s * s + p * p) / 2), static_cast<Real>(cos_t), false};
 }
 
 // A ray and its throughput; nothing is traced where no component of the weight is positive.
