@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <random>
 
 #include "random_scene.h"
 #include "src/formats/picture.h"
@@ -100,9 +101,12 @@ TEST_CASE("every view is close to POV-Ray's") {
     return;
   }
   const Scene scene = CrystalBall();
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      ("sheaf-image-test-" + std::to_string(std::random_device()()));
+  std::filesystem::create_directory(folder);
   for (const Camera& camera : scene.cameras) {
-    const std::string picture =
-        (std::filesystem::current_path() / ("povray-" + camera.name + ".png")).string();
+    const std::string picture = (folder / (camera.name + ".png")).string();
     const std::string command =
         "povray +I'" SHEAF_SOURCE_DIR
         "/tests/reference/crystal-ball.pov' +W640 +H480 -A -D +WT1 "
@@ -113,6 +117,7 @@ TEST_CASE("every view is close to POV-Ray's") {
     CheckClose(camera.name, "POV-Ray",
                Compare(RenderView(scene, camera, Precision::kStrict), ReadPixels(picture)));
   }
+  std::filesystem::remove_all(folder);
 }
 
 // Counted by an independent tracer in double precision; floats may decide a few rays differently.

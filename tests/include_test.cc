@@ -197,7 +197,8 @@ TEST_CASE("the tree keeps to the direction of includes, to its guards and to pla
   REQUIRE(texts.count("simd/layout.h"));
   for (const std::string& violation : Violations(texts)) FAIL_CHECK(violation);
   // Every directory under src/ has its place.
-  for (const auto& [path, text] : texts) {
+  for (const auto& entry : texts) {  // clang 14 captures no structured binding
+    const std::string& path = entry.first;
     if (StartsWith(path, "src/")) CHECK_MESSAGE(Below().count(LayerOf(path)) == 1, path);
   }
   // What src/scalar shares with the kernels is free of Highway, and the kernels are not.
@@ -275,7 +276,9 @@ TEST_CASE("each kind of violation is found") {
       {"src/app/main.cc", "\"render.h\""},               // not from the root
       {"src/app/main.cc", "<src/render/render.h>"},      // not quoted
   };
-  for (const auto& [path, include] : wrong) {
+  for (const auto& entry : wrong) {
+    const auto path = entry.first;
+    const auto include = entry.second;
     CAPTURE(path);
     CAPTURE(include);
     Texts texts = SoundTree();

@@ -258,44 +258,23 @@ float CriticalCosine(float eta) {
   return static_cast<float>(std::sqrt((1 - 1 / e) * (1 + 1 / e)));
 }
 
-TEST_CASE("at the critical angle and 1 ULP to either side the split decides as the oracle") {
+// The critical cosine itself, 1 ULP to either side, and all around it.
+TEST_CASE("around the critical angle the split decides as the oracle") {
   Random random(53);
-  int wrong = 0, total = 0;
-  float worst = 0;
+  int wrong = 0, total = 0, judged = 0;
   for (int i = 0; i < 100000; ++i) {
     const float eta = i == 0 ? 1.5f : static_cast<float>(Uniform(random, 1.01, 3));
-    for (int ulps = -1; ulps <= 1; ++ulps) {
+    const int reach = i % 50 == 0 ? 64 : 1;
+    for (int ulps = -reach; ulps <= reach; ++ulps) {
       const float cos_i = StepUlps(CriticalCosine(eta), ulps);
-      const auto got = scalar::FresnelSplit(eta, cos_i);
-      const auto want = scalar::FresnelSplit<long double>(eta, cos_i);
-      total += want.is_total;
-      if (got.is_total == want.is_total) continue;
-      ++wrong;
-      worst = std::max(worst, std::abs(got.reflectance - static_cast<float>(want.reflectance)));
-    }
-  }
-  CAPTURE(worst);  // what a wrong decision does to the reflectance
-  CHECK(wrong == 0);
-  CHECK(total > 100000);
-}
-
-// k = 1 - eta^2 (1 - cos^2) is off by the roundoff of cos^2, magnified by eta^2, and three more of
-// the product, which is 1 there: (2 + eta^2) roundoffs in all. The last subtraction is exact.
-TEST_CASE("outside the roundoffs of k the split decides as the oracle") {
-  Random random(62);
-  int judged = 0, wrong = 0;
-  for (int i = 0; i < 5000; ++i) {
-    const float eta = static_cast<float>(Uniform(random, 1.01, 3));
-    for (int ulps = -64; ulps <= 64; ++ulps) {
-      const float cos_i = StepUlps(CriticalCosine(eta), ulps);
-      const long double e = eta, c = cos_i, k = 1 - e * e * (1 - c * c);
-      if (std::abs(k) <= (2 + e * e) * kRoundoff<float>) continue;
-      ++judged;
-      wrong += scalar::FresnelSplit(eta, cos_i).is_total != (k < 0);
+      const bool want = scalar::FresnelSplit<long double>(eta, cos_i).is_total;
+      wrong += scalar::FresnelSplit(eta, cos_i).is_total != want;
+      total += want, ++judged;
     }
   }
   CHECK(wrong == 0);
-  CHECK(judged > 500000);
+  CHECK(total > judged / 3);
+  CHECK(total < judged * 2 / 3);
 }
 
 TEST_CASE("reflectance lies in [0, 1], grows to 1 at grazing and is the oracle's") {
@@ -309,13 +288,10 @@ TEST_CASE("reflectance lies in [0, 1], grows to 1 at grazing and is the oracle's
     REQUIRE(split.reflectance <= 1);
     REQUIRE(split.cos_t >= 0);
     const auto want = scalar::FresnelSplit<long double>(eta, cos_i);
-    // Near the critical angle 1 - reflectance goes with the square root of what is left.
-    if (want.cos_t > 0.01L || (split.is_total && want.is_total)) {
-      worst = std::max(worst, std::abs(static_cast<double>(split.reflectance - want.reflectance)));
-    }
+    worst = std::max(worst, std::abs(static_cast<double>(split.reflectance - want.reflectance)));
   }
   MESSAGE("largest error of the reflectance: ", worst);
-  CHECK(worst < 1e-4);
+  CHECK(worst < 6e-8);
   CHECK(scalar::FresnelSplit(1.5f, 0.0f).reflectance == 1);
   CHECK(scalar::FresnelSplit(1 / 1.5f, 0.0f).reflectance == 1);
 }
@@ -545,10 +521,10 @@ TEST_CASE("rays that a triangle spawns start on their side; a coplanar neighbour
   CHECK(hits > 20000);
 }
 
-// A light lower over the quad than its direction and the vertices seen from it are rounded lies in
-// the plane as far as floats tell: both are off by kLightRoundoffs of the distance.
+// A light within 32 roundoffs of the distance over the quad lies in its plane as far as floats
+// tell: the vertices are rounded when seen from it, and so is n.l, whose sign alone lets it shine.
 TEST_CASE("shadow rays do not meet the quad they are for, grazing light included") {
-  constexpr float kInPlane = 2 * kLightRoundoffs<float>;
+  constexpr float kInPlane = 32 * kRoundoff<float>;
   Random random(60);
   int lit = 0, grazing = 0, in_plane = 0;
   for (int i = 0; i < 200000; ++i) {
@@ -618,7 +594,11 @@ TEST_CASE("shadow rays do not meet the sphere they are for, from outside and ins
       const auto incidence = scalar::IncidenceOf(light, surface);
       if (!(incidence.n_dot_l > 0)) continue;
       ++(surface.inside() ? inside : outside);
-      if (scalar::TraceOccluded(geometry, scalar::ShadowRay(light, surface, incidence))) {
+      const Ray<float> shadow = scalar::ShadowRay(light, surface, incidence);
+      // Outside, the id is the exact rule; from inside, a light may be beyond the sphere itself.
+      const bool is_named = !surface.inside() || kind == LightKind::kPointFromSurface;
+      REQUIRE(shadow.source == (is_named ? surface.source : kNoPrimitive));
+      if (scalar::TraceOccluded(geometry, shadow)) {
         FAIL_CHECK("round ", i, " inside ", surface.inside(), " light kind ",
                    static_cast<int>(kind), " n.l ", incidence.n_dot_l, " size ", at.size,
                    " offset ", surface.offset);
