@@ -9,5 +9,9 @@ cmake --preset release
 cmake --build --preset release --parallel "$(nproc)" --target sheaf
 
 mkdir -p out
-build/release/sheaf render scenes/crystal-ball.json --views seven -o 'out/{camera}.png' "$@"
+cameras=(--views seven)
+for argument in "$@"; do
+  [[ $argument == --camera* || $argument == --views* ]] && cameras=()
+done
+build/release/sheaf render scenes/crystal-ball.json "${cameras[@]}" -o 'out/{camera}.png' "$@"
 echo "The pictures are in $PWD/out"

@@ -365,6 +365,22 @@ TEST_CASE("statistics on stdout are one JSON object") {
   }
 }
 
+TEST_CASE("no output replaces another file of the same run") {
+  const Workspace work;
+  const std::string scene = work / "scene.json";
+  std::filesystem::copy_file(kScene, scene);
+  const auto size = std::filesystem::file_size(scene);
+  const Outcome over_scene =
+      work.Run({"render", scene, "-q", "--size", "8x8", "-o", work / "a.png", "--json=" + scene});
+  CHECK(over_scene.code == 2);
+  CHECK(std::filesystem::file_size(scene) == size);
+  const std::string picture = work / "b.png";
+  const Outcome over_picture =
+      work.Run({"render", scene, "-q", "--size", "8x8", "-o", picture, "--json=" + picture});
+  CHECK(over_picture.code == 2);
+  CHECK(!std::filesystem::exists(picture));
+}
+
 TEST_CASE("--json=FILE writes the file and swallows no other argument") {
   const Workspace work;
   const Outcome outcome = work.Run({"render", "--json=" + (work / "a.json"), kScene, "--size",

@@ -1,11 +1,13 @@
 // Whole pictures: against POV-Ray, against double precision, and against themselves bit by bit.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <random>
+#include <thread>
 
 #include "random_scene.h"
 #include "src/formats/picture.h"
@@ -322,6 +324,48 @@ TEST_CASE("several materials that spawn rays at one depth have the same bits on 
   CheckSameBits(scene, scene.cameras[0], options);
 }
 
+// Reflect and transmit add up to 2, so that weights overflow to infinity inside the ball, where
+// nothing is shaded.
+TEST_CASE("weights that overflow have the same bits on every target") {
+  Scene scene;
+  Material glass;
+  glass.reflect = glass.transmit = Colour(1.0);
+  glass.ior = 1.5;
+  scene.materials = {glass};
+  scene.objects = {{"", Sphere{{0, 0, 0}, 1}, 0}};
+  const Camera camera{"in", {0.9, 0, 0}, {0.9, 0, -1}, {0, 1, 0}, Perspective{40}};
+  RenderOptions options;
+  options.width = 8;
+  options.height = 8;
+  options.max_depth = 300;
+  options.engine = Engine::kScalar;
+  const Film scalar = RenderOrFail(scene, camera, options);
+  options.engine = Engine::kSimd;
+  ForEachTarget([&](const std::string&) {
+    CHECK(PixelsThatDiffer(RenderOrFail(scene, camera, options), scalar) == 0);
+  });
+}
+
+TEST_CASE("a scene of many materials is binned by the few that a tile meets") {
+  Scene scene;
+  for (int i = 0; i < 5000; ++i) {
+    Material material;
+    material.base_colour = Colour(i % 7 * 0.1, i % 11 * 0.05, 0.5);
+    material.ambient = 1;
+    scene.materials.push_back(material);
+  }
+  for (std::uint32_t i = 0; i < 25; ++i) {
+    const double x = i % 5, y = i / 5;
+    scene.objects.push_back({"", Sphere{{x - 2, y - 2, -6}, 0.6}, 4999 - 199 * i});
+  }
+  scene.settings.background = {0.5, 0.5, 0.5};
+  const Camera camera{"c", {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, Perspective{60}};
+  RenderOptions options;
+  options.width = 70;
+  options.height = 60;
+  CheckSameBits(scene, camera, options);
+}
+
 TEST_CASE("an empty scene shows its background, and nothing is lit without lights") {
   Scene scene;
   scene.settings.background = {0.25, 0.5, 0.75};
@@ -362,6 +406,24 @@ TEST_CASE("options out of range are refused") {
   CHECK(refused(options));
   options.crop = PixelRect{5, 5, 5, 10};
   CHECK(refused(options));
+}
+
+TEST_CASE("a stop during a pixel ends it") {
+  const Scene scene = CrystalBall();
+  for (const Engine engine : {Engine::kScalar, Engine::kSimd}) {
+    RenderOptions options;
+    options.engine = engine;
+    options.samples = kMaxSamples;  // hours, if it were not stopped
+    options.threads = 1;
+    RenderProgress progress;
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      progress.stop = true;
+    });
+    const Result<Film> film = Render(scene, scene.cameras[0], options, nullptr, &progress);
+    stopper.join();
+    CHECK(!film.ok());
+  }
 }
 
 TEST_CASE("a stop that was asked for gives no film") {

@@ -175,7 +175,7 @@ TEST_CASE("ambient light is ka times the base colour, with no light at all") {
   CHECK(colour.x == 0.1f);
   CHECK(colour.y == 0.1f);
   CHECK(colour.z == 0.125f);
-  scalar::RayTally tally;
+  RayCounts tally;
   const auto local = scalar::LocalLight(FrameView<float>{}, material, Floor(), tally);
   CHECK(local.x == 0.1f);
   CHECK(local.z == 0.125f);
@@ -193,7 +193,7 @@ Vec3<float> UnderOneLight(const LightData<float>& light, const MaterialData<floa
   frame.lights = {&light, 1};
   Surface<float> surface = Floor();
   surface.source = 99;
-  scalar::RayTally tally;
+  RayCounts tally;
   return scalar::LocalLight(frame, material, surface, tally);
 }
 

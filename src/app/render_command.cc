@@ -125,6 +125,25 @@ Status CheckRequest(const RenderRequest& request) {
   return Done{};
 }
 
+// Whether two paths name one file, there already or not.
+bool IsSameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
+// No output may replace another file of the same run, the scene least of all.
+Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& frames) {
+  const auto clash = [](const char* option, const std::string& path) {
+    return Usage(fmt::format("{} {}: another file of this run has the same path", option, path));
+  };
+  if (IsSameFile(request.statistics, request.scene)) return clash("--json", request.statistics);
+  for (const Frame& frame : frames) {
+    if (IsSameFile(frame.path, request.scene)) return clash("-o", frame.path);
+    if (IsSameFile(frame.path, request.statistics)) return clash("--json", request.statistics);
+  }
+  return Done{};
+}
+
 Result<std::vector<const Camera*>> ChooseCameras(const RenderRequest& request, const Scene& scene) {
   std::vector<const Camera*> cameras;
   if (!request.view.empty()) {
@@ -260,7 +279,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
             fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
             "Pixels of the whole picture", &ParseSize);
   AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
-  AddInteger(*render, "--max-depth", request.max_depth, 0, INT_MAX,
+  AddInteger(*render, "--max-depth", request.max_depth, 0, kMaxDepth,
              "A ray deeper than this is black; primary rays have depth 0");
   AddParsed(*render, "--crop", request.crop, "x0,y0,x1,y1",
             "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",
@@ -293,6 +312,7 @@ Status RunRender(const RenderRequest& request) {
   if (!options) return options.error();
   const Result<std::vector<Frame>> frames = PlanFrames(request, scene.value());
   if (!frames) return frames.error();
+  if (const Status apart = CheckOverwriting(request, frames.value()); !apart) return apart;
 
   CatchInterrupts();
   const ProgressStyle style = ChooseProgressStyle(request);

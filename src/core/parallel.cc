@@ -7,24 +7,27 @@
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <cassert>
+
 namespace sheaf {
 
 int ThreadCount(int threads) {
   return threads > 0 ? threads : oneapi::tbb::info::default_concurrency();
 }
 
-void ParallelFor(int threads, std::uint32_t count,
-                 const std::function<void(int worker, std::uint32_t item)>& body) {
+void ParallelFor(int threads, std::uint64_t count,
+                 const std::function<void(int worker, std::uint64_t item)>& body) {
+  assert(threads > 0);
   // More threads than cores are allowed: a user who asks for them gets them.
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
   oneapi::tbb::task_arena arena(threads);
   arena.execute([&] {
     oneapi::tbb::parallel_for(
-        oneapi::tbb::blocked_range<std::uint32_t>(0, count, 1),
-        [&](const oneapi::tbb::blocked_range<std::uint32_t>& range) {
+        oneapi::tbb::blocked_range<std::uint64_t>(0, count, 1),
+        [&](const oneapi::tbb::blocked_range<std::uint64_t>& range) {
           const int worker = oneapi::tbb::this_task_arena::current_thread_index();
-          for (std::uint32_t item = range.begin(); item != range.end(); ++item) body(worker, item);
+          for (std::uint64_t item = range.begin(); item != range.end(); ++item) body(worker, item);
         },
         oneapi::tbb::simple_partitioner());
   });

@@ -14,8 +14,8 @@ int ThreadCount(int threads);
 // threads. Calls with the same worker, in [0, threads), never overlap, so that a worker may own its
 // buffers. Items are handed out one by one. What a body throws is thrown here, after the loop has
 // stopped.
-void ParallelFor(int threads, std::uint32_t count,
-                 const std::function<void(int worker, std::uint32_t item)>& body);
+void ParallelFor(int threads, std::uint64_t count,
+                 const std::function<void(int worker, std::uint64_t item)>& body);
 
 }  // namespace sheaf
 

@@ -27,8 +27,8 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 
 constexpr NumberRange kImageSide{1.0, kMaxImageSide, "an integer in [1, 65536]"};
-constexpr NumberRange kSamples{1.0, 65536.0, "an integer in [1, 65536]"};
-constexpr NumberRange kMaxDepth{0.0, 1e6, "an integer in [0, 1000000]"};
+constexpr NumberRange kSampleCount{1.0, kMaxSamples, "an integer in [1, 65536]"};
+constexpr NumberRange kDepthLimit{0.0, kMaxDepth, "an integer in [0, 1000000]"};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
 constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
 constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
@@ -44,8 +44,8 @@ Settings ReadSettings(const JsonCursor& value) {
     (*size)[0].ReadInteger(kImageSide, &settings.width);
     (*size)[1].ReadInteger(kImageSide, &settings.height);
   }
-  object.Optional("samples").ReadInteger(kSamples, &settings.samples);
-  object.Optional("max_depth").ReadInteger(kMaxDepth, &settings.max_depth);
+  object.Optional("samples").ReadInteger(kSampleCount, &settings.samples);
+  object.Optional("max_depth").ReadInteger(kDepthLimit, &settings.max_depth);
   bool is_srgb = false;
   object.Optional("srgb").ReadBoolean(&is_srgb);
   settings.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;

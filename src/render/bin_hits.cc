@@ -13,8 +13,8 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     primitive_.Allocate(StreamCapacity(count));
   }
   // Neighbouring rays mostly hit the same primitive, so that a run of them costs one look-up.
-  std::fill(counts_.begin(), counts_.end(), 0u);
   runs_.clear();
+  keys_.assign(1, 0);
   for (std::uint32_t i = 0; i < count;) {
     const std::uint32_t first = i, primitive = hit_primitives[i];
     while (i < count && hit_primitives[i] == primitive) ++i;
@@ -24,6 +24,7 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
       run.key = 1 + 2 * info.material + (info.local & kTriangleBit ? 1 : 0);
       run.local = info.local & ~kTriangleBit;
     }
+    if (counts_[run.key] == 0 && run.key != 0) keys_.push_back(run.key);
     counts_[run.key] += run.size;
     runs_.push_back(run);
   }
@@ -31,9 +32,10 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
   bins_.clear();
   missed_rays_ = {ray_.data(), counts_[0]};
   std::uint32_t first = 0;
-  for (std::uint32_t key = 0; key < counts_.size(); ++key) {
+  std::sort(keys_.begin(), keys_.end());
+  for (const std::uint32_t key : keys_) {
     const std::uint32_t size = counts_[key];
-    if (key > 0 && size > 0) {
+    if (key > 0) {
       bins_.push_back(
           {(key - 1) / 2,
            static_cast<ShapeKind>((key - 1) % 2),
@@ -49,6 +51,8 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     std::fill_n(primitive_.data() + at, run.size, run.primitive);
     std::fill_n(local_.data() + at, run.size, run.local);
   }
+  // Only what was counted is cleared: most scenes have more materials than a stream meets.
+  for (const std::uint32_t key : keys_) counts_[key] = 0;
 }
 
 }  // namespace sheaf

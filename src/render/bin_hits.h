@@ -39,6 +39,7 @@ class HitBinner {
   };
 
   std::vector<std::uint32_t> counts_;  // by key: 0 for misses, then 1 + 2 * material + shape
+  std::vector<std::uint32_t> keys_;    // that this stream met, ascending; 0 always
   std::vector<Run> runs_;
   AlignedArray<std::uint32_t> ray_, local_, primitive_;
   std::vector<HitBin> bins_;

@@ -28,12 +28,13 @@ double SecondsSince(Clock::time_point start) {
 template <typename Real>
 class ScalarTileRenderer {
  public:
-  ScalarTileRenderer(const FrameView<Real>& frame, Timing /*timing*/) : frame_(frame) {}
+  ScalarTileRenderer(const FrameView<Real>& frame, Timing /*timing*/, const std::atomic<bool>& stop)
+      : frame_(frame), stop_(stop) {}
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
     for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_);
+      for (int x = tile.x0; x < tile.x1 && !stop_.load(std::memory_order_relaxed); ++x) {
+        const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_);
         float* rgb = film.pixel(x - film_x, y - film_y);
         rgb[0] = static_cast<float>(colour.x);
         rgb[1] = static_cast<float>(colour.y);
@@ -42,15 +43,14 @@ class ScalarTileRenderer {
     }
   }
 
-  RayCounts rays() const {
-    return {tally_.primary, tally_.shadow, tally_.reflected, tally_.refracted, tally_.beyond_depth};
-  }
+  const RayCounts& rays() const { return tally_; }
   double phase_seconds(Phase /*phase*/) const { return 0; }
 
  private:
   const FrameView<Real>& frame_;
   scalar::PixelScratch<Real> scratch_;
-  scalar::RayTally tally_;
+  RayCounts tally_;
+  const std::atomic<bool>& stop_;
 };
 
 // Hands the tiles of `area` to workers until all are done or a stop is asked for.
@@ -58,14 +58,15 @@ template <typename Renderer, typename Real>
 bool RenderTiles(const FrameView<Real>& frame, const PixelRect& area, const RenderOptions& options,
                  Film& film, RenderStats& stats, RenderProgress& progress) {
   const int size = options.tile_size;
-  const std::uint32_t columns = static_cast<std::uint32_t>((area.width() + size - 1) / size);
-  const std::uint32_t rows = static_cast<std::uint32_t>((area.height() + size - 1) / size);
-  const int threads = static_cast<int>(std::min<std::uint32_t>(
-      static_cast<std::uint32_t>(ThreadCount(options.threads)), columns * rows));
+  const auto columns = static_cast<std::uint64_t>((area.width() + size - 1) / size);
+  const auto rows = static_cast<std::uint64_t>((area.height() + size - 1) / size);
+  const auto wanted = static_cast<std::uint64_t>(ThreadCount(options.threads));
+  const int threads = static_cast<int>(std::min(wanted, columns * rows));
   std::vector<std::unique_ptr<Renderer>> workers(static_cast<std::size_t>(threads));
-  for (auto& worker : workers) worker = std::make_unique<Renderer>(frame, options.timing);
+  for (auto& worker : workers)
+    worker = std::make_unique<Renderer>(frame, options.timing, progress.stop);
 
-  ParallelFor(threads, columns * rows, [&](int worker, std::uint32_t item) {
+  ParallelFor(threads, columns * rows, [&](int worker, std::uint64_t item) {
     if (progress.stop.load(std::memory_order_relaxed)) return;
     PixelRect tile;
     tile.x0 = area.x0 + static_cast<int>(item % columns) * size;
@@ -136,7 +137,7 @@ std::string Complaint(const RenderOptions& options) {
   if (!within(options.tile_size, 1, kMaxTileSize))
     return out_of_range("tile size", 1, kMaxTileSize);
   if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
-  if (options.max_depth < 0) return "max depth must not be negative";
+  if (!within(options.max_depth, 0, kMaxDepth)) return out_of_range("max depth", 0, kMaxDepth);
   if (options.crop) {
     const PixelRect& crop = *options.crop;
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > options.width || crop.y1 > options.height ||
@@ -153,15 +154,6 @@ const char* PhaseName(Phase phase) {
   static constexpr const char* kNames[] = {"generate", "trace",  "bin",   "surface",
                                            "shade",    "shadow", "spawn", "accumulate"};
   return kNames[static_cast<int>(phase)];
-}
-
-RayCounts& RayCounts::operator+=(const RayCounts& other) {
-  primary += other.primary;
-  shadow += other.shadow;
-  reflected += other.reflected;
-  refracted += other.refracted;
-  beyond_depth += other.beyond_depth;
-  return *this;
 }
 
 Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "src/core/error.h"
+#include "src/scalar/ray_counts.h"
 #include "src/scene/film.h"
 #include "src/scene/scene.h"
 
@@ -26,20 +27,19 @@ enum class Engine {
 
 enum class Timing { kOff, kOn };
 
-inline constexpr int kMaxSamples = 65536;
 inline constexpr int kMaxTileSize = 256;
 inline constexpr int kMaxThreads = 1024;
 
 struct RenderOptions {
   int width = 640, height = 480;  // of the whole picture, [1, kMaxImageSide]
   int samples = 1;                // a pixel, >= 1
-  int max_depth = 5;              // >= 0
+  int max_depth = 5;              // [0, kMaxDepth]
   std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
   Engine engine = Engine::kSimd;
   Precision precision = Precision::kStrict;
   int threads = 0;     // 0: one a core
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
-  Timing timing = Timing::kOff;  // whether RenderStats::seconds is filled
+  Timing timing = Timing::kOff;  // whether RenderStats::phase_seconds is filled
 };
 
 enum class Phase {
@@ -54,15 +54,6 @@ enum class Phase {
   kCount
 };
 const char* PhaseName(Phase phase);  // lower case, e.g. "trace"
-
-// Reflected and refracted rays are counted where they are spawned. Of these, `beyond_depth` are
-// deeper than the limit: black, and not traced.
-struct RayCounts {
-  std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
-  std::uint64_t beyond_depth = 0;
-  std::uint64_t traced() const { return primary + shadow + reflected + refracted - beyond_depth; }
-  RayCounts& operator+=(const RayCounts& other);
-};
 
 struct RenderStats {
   RayCounts rays;

@@ -34,7 +34,7 @@ template <typename Real>
 void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
   OrderPixels(tile);
   const std::size_t samples = frame_.sample_x.size();
-  for (std::size_t i = 0; i < samples; ++i) {
+  for (std::size_t i = 0; i < samples && !stop_.load(std::memory_order_relaxed); ++i) {
     RenderSample(frame_.sample_x[i], frame_.sample_y[i]);
     if (samples > 1) AddSample(i);
   }
@@ -59,6 +59,7 @@ void TileRenderer<Real>::RenderSample(Real sample_x, Real sample_y) {
     }
     next_reflected_.Reset(reflected_.count + refracted_.count);
     next_refracted_.Reset(reflected_.count + refracted_.count);
+    if (stop_.load(std::memory_order_relaxed)) return;
     TraceAndShade(reflected_, depth);
     TraceAndShade(refracted_, depth);
   }

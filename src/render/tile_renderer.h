@@ -2,6 +2,7 @@
 #ifndef SHEAF_RENDER_TILE_RENDERER_H_
 #define SHEAF_RENDER_TILE_RENDERER_H_
 
+#include <atomic>
 #include <chrono>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace sheaf {
 template <typename Real>
 class TileRenderer {
  public:
-  TileRenderer(const FrameView<Real>& frame, Timing timing)
-      : frame_(frame), binner_(frame.materials.size()), timing_(timing) {}
+  // Once `stop` is set a call of Render ends soon, and what it leaves is rubbish.
+  TileRenderer(const FrameView<Real>& frame, Timing timing, const std::atomic<bool>& stop)
+      : frame_(frame), binner_(frame.materials.size()), timing_(timing), stop_(stop) {}
 
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).
@@ -51,6 +53,7 @@ class TileRenderer {
   const FrameView<Real>& frame_;
   HitBinner binner_;
   Timing timing_;
+  const std::atomic<bool>& stop_;
   RayCounts rays_;
   double seconds_[static_cast<int>(Phase::kCount)] = {};
   Clock::time_point clock_;

@@ -7,19 +7,16 @@
 #ifndef SHEAF_SCALAR_RENDER_PIXEL_H_
 #define SHEAF_SCALAR_RENDER_PIXEL_H_
 
+#include <atomic>
 #include <vector>
 
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/frame_view.h"
+#include "src/scalar/ray_counts.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
 
 namespace sheaf::scalar {
-
-struct RayTally {
-  std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
-  std::uint64_t beyond_depth = 0;  // of the reflected and refracted ones, not traced
-};
 
 // One depth's rays and the next one's, kept to spare allocations.
 template <typename Real>
@@ -29,7 +26,8 @@ struct PixelScratch {
 
 template <typename Real>
 Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
-                      const Surface<Real>& surface, RayTally& tally) {
+                      const Surface<Real>& surface, RayCounts& tally) {
+  if (!HasLocalLight(material, surface)) return {0, 0, 0};
   const Vec3<Real> base = BaseColourAt(material, surface);
   Vec3<Real> colour = AmbientLight(material, base);
   if (!ReactsToLight(material)) return colour;
@@ -63,11 +61,12 @@ void Accumulate(Vec3<Real>& sum, const Real (&weight)[3], Vec3<Real> colour) {
 // The colour of one sample: breadth first from its primary ray, which has depth 0.
 template <typename Real>
 Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
-                        PixelScratch<Real>& scratch, RayTally& tally) {
+                        PixelScratch<Real>& scratch, RayCounts& tally,
+                        const std::atomic<bool>& stop) {
   Vec3<Real> sum = {0, 0, 0};
   scratch.paths.assign(1, {primary, {1, 1, 1}});
   ++tally.primary;
-  for (int depth = 0; !scratch.paths.empty(); ++depth) {
+  for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
     scratch.reflected.clear();
     scratch.refracted.clear();
     for (const Path<Real>& path : scratch.paths) {
@@ -79,9 +78,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];
       const Surface<Real> surface = SurfaceOf(frame, path.ray, hit);
-      if (HasLocalLight(material, surface)) {
-        Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
-      }
+      Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
       if (!SpawnsRays(material)) continue;
       const Spawned<Real> spawned = Spawn(material, surface, path.weight);
       if (spawned.reflected.exists()) scratch.reflected.push_back(spawned.reflected);
@@ -99,16 +96,17 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
   return sum;
 }
 
-// The mean of the pixel's samples, added up in the order of the pattern.
+// Rubbish after `stop` was set, which ends any pixel soon. The mean of the pixel's samples, added
+// up in the order of the pattern.
 template <typename Real>
 Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<Real>& scratch,
-                       RayTally& tally) {
+                       RayCounts& tally, const std::atomic<bool>& stop) {
   Vec3<Real> sum = {0, 0, 0};
   const std::size_t samples = frame.sample_x.size();
   for (std::size_t i = 0; i < samples; ++i) {
     const Ray<Real> primary = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
                                         frame.sample_x[i], frame.sample_y[i]);
-    sum = sum + RenderSample(frame, primary, scratch, tally);
+    sum = sum + RenderSample(frame, primary, scratch, tally, stop);
   }
   return sum / static_cast<Real>(samples);
 }

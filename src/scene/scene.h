@@ -112,10 +112,12 @@ struct View {
 enum class Transfer { kLinear, kSrgb };
 
 inline constexpr int kMaxImageSide = 65536;
+inline constexpr int kMaxSamples = 65536;
+inline constexpr int kMaxDepth = 1000000;
 
 struct Settings {
   int width = 640, height = 480;   // pixels, each in [1, kMaxImageSide]
-  int samples = 1;                 // a pixel, >= 1
+  int samples = 1;                 // a pixel, [1, kMaxSamples]
   int max_depth = 5;               // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
   std::optional<Colour> ambient;   // ambient light; the background where absent
