@@ -1,11 +1,13 @@
 // Plain views of everything a kernel reads or writes: streams, geometry, materials, lights, camera.
 //
-// Layout: structure of arrays, one pointer a field, 64-byte aligned.
+// Layout: structure of arrays, one pointer a field. The owning arrays are aligned to kAlignment; a
+// view
+//   may start anywhere in them, so kernels assume no alignment.
 // Padding: a stream of `n` elements owns StreamCapacity(n) of each field. Kernels load and store
-// whole
-//   vectors: lanes past the count may hold anything on entry and anything on return.
+//   whole vectors: lanes past the count may hold anything on entry and anything on return.
 // Aliasing: the fields of a view never overlap, and no output overlaps an input.
 // NaN: allowed everywhere in rays; such a ray misses (src/scalar/ray.h).
+// Colours are never -0: a sum of them is then the same whether it starts at 0 or at the first.
 // `Real` is float or double; identifiers are 32 bit in both.
 #ifndef SHEAF_SIMD_LAYOUT_H_
 #define SHEAF_SIMD_LAYOUT_H_
@@ -51,9 +53,8 @@ struct RayIntervals {
   Real all_t_max = kDefaultTMax<Real>;
 };
 
-// ---- Streams
-// ------------------------------------------------------------------------------------- A stream is
-// declared once, over what a field is: an owning array, a pointer or a const pointer.
+// ---- Streams ----
+// A stream is declared once, over what a field is: an owning array, a pointer or a const pointer.
 
 template <typename T>
 using MutableField = T*;
@@ -167,8 +168,7 @@ struct HitBatch {
   std::uint32_t count;
 };
 
-// ---- Geometry
-// ------------------------------------------------------------------------------------
+// ---- Geometry ----
 
 template <typename Real>
 struct SphereArrays {
@@ -193,8 +193,7 @@ struct GeometryView {
   TriangleArrays<Real> triangles;
 };
 
-// ---- What a frame is shaded with
-// ------------------------------------------------------------------
+// ---- What a frame is shaded with ----
 
 enum class BaseColour : std::uint32_t { kConstant, kChecker };
 
@@ -210,8 +209,7 @@ struct MaterialData {
 };
 
 enum class LightKind : std::uint32_t {
-  kPointFromLight,    // shadow rays run from the light to the surface, so that a batch shares an
-                      // origin
+  kPointFromLight,    // shadow rays run from the light, so that a batch shares its origin
   kPointFromSurface,  // a light so far away that rounding there would reach the surface
   kDirectional,
 };

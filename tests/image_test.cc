@@ -32,8 +32,7 @@ Film RenderOrFail(const Scene& scene, const Camera& camera, const RenderOptions&
   return std::move(film).value();
 }
 
-// ---- Against other arithmetic and another renderer
-// ------------------------------------------------
+// ---- Against other arithmetic and another renderer ----
 
 struct Difference {
   int pixels_over = 0;  // that differ by more than 1/255 in a channel
@@ -149,8 +148,7 @@ TEST_CASE("ray counts at 1280x960") {
   }
 }
 
-// ---- The same bits
-// ---------------------------------------------------------------------------------
+// ---- The same bits ----
 
 int PixelsThatDiffer(const Film& a, const Film& b) {
   REQUIRE(a.width == b.width);

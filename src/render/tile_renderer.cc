@@ -27,8 +27,7 @@ std::uint32_t EvenBits(std::uint32_t code) {
 
 }  // namespace
 
-// ---- The schedule
-// ---------------------------------------------------------------------------------
+// ---- The schedule ----
 
 template <typename Real>
 void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
@@ -227,8 +226,7 @@ void TileRenderer<Real>::WritePixels(std::size_t samples, int film_x, int film_y
   Charge(Phase::kAccumulate);
 }
 
-// ---- Primary rays and buffers
-// ----------------------------------------------------------------------
+// ---- Primary rays and buffers ----
 
 // In Morton order, so that any power of two of consecutive rays is a square or half of one.
 template <typename Real>

@@ -31,13 +31,13 @@ struct Checker {
 struct Material {
   std::string name;
   std::variant<Colour, Checker> base_colour = Colour(1.0);
-  double ambient = 0.0;     // ka, >= 0: ka * base * the scene's ambient light
-  double kd = 0.0;          // diffuse, >= 0
-  double ks = 0.0;          // half-vector highlight, >= 0; has the light's colour
-  double shininess = 1.0;   // highlight exponent, >= 0
-  Colour reflect{0.0};      // mirror reflectance, [0, 1]
-  Colour transmit{0.0};     // [0, 1]: share that meets a dielectric interface and is split by Fresnel
-  double ior = 1.0;         // index of refraction inside over outside, > 0
+  double ambient = 0.0;    // ka, >= 0: ka * base * the scene's ambient light
+  double kd = 0.0;         // diffuse, >= 0
+  double ks = 0.0;         // half-vector highlight, >= 0; has the light's colour
+  double shininess = 1.0;  // highlight exponent, >= 0
+  Colour reflect{0.0};     // mirror reflectance, [0, 1]
+  Colour transmit{0.0};  // [0, 1]: share that meets a dielectric interface and is split by Fresnel
+  double ior = 1.0;      // index of refraction inside over outside, > 0
 };
 
 struct Sphere {
@@ -45,7 +45,8 @@ struct Sphere {
   double radius = 1.0;  // >= 0; a sphere of radius 0 is never hit
 };
 
-// Front side: counter-clockwise. Surface coordinates: (0,0), (1,0), (0,1) unless `uv` says otherwise.
+// Front side: counter-clockwise. Surface coordinates: (0,0), (1,0), (0,1) unless `uv` says
+// otherwise.
 struct Triangle {
   std::array<Vec3d, 3> vertices;
   std::array<glm::dvec2, 3> uv{glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1)};
@@ -116,12 +117,12 @@ inline constexpr int kMaxSamples = 65536;
 inline constexpr int kMaxDepth = 1000000;
 
 struct Settings {
-  int width = 640, height = 480;   // pixels, each in [1, kMaxImageSide]
-  int samples = 1;                 // a pixel, [1, kMaxSamples]
-  int max_depth = 5;               // a ray deeper than this is black; primary rays have depth 0
+  int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
+  int samples = 1;                // a pixel, [1, kMaxSamples]
+  int max_depth = 5;              // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
-  std::optional<Colour> ambient;   // ambient light; the background where absent
-  double exposure = 1.0;           // scales every light but the ambient one, > 0
+  std::optional<Colour> ambient;          // ambient light; the background where absent
+  double exposure = 1.0;                  // scales every light but the ambient one, > 0
   Transfer transfer = Transfer::kLinear;  // of colours read and of 8-bit pictures written
 };
 

@@ -22,8 +22,7 @@ class Stream {
     ForEachField(view, arrays_, [](auto& to, auto& from) { to = from.data(); });
     return view;
   }
-  // The elements from `first` on; whole-vector stores there need `first` + count within the
-  // capacity.
+  // The elements from `first` on; `first` + count stays within the n of Allocate.
   Fields<Real, MutableField> output(std::uint32_t first = 0) {
     Fields<Real, MutableField> view;
     ForEachField(view, arrays_, [&](auto& to, auto& from) { to = from.data() + first; });
