@@ -1,7 +1,6 @@
 // Plain views of everything a kernel reads or writes: streams, geometry, materials, lights, camera.
 //
-// Layout: structure of arrays, one pointer a field. The owning arrays are aligned to kAlignment; a
-// view
+// Layout: structure of arrays, one pointer a field. Owning arrays are aligned to kAlignment; a view
 //   may start anywhere in them, so kernels assume no alignment.
 // Padding: a stream of `n` elements owns StreamCapacity(n) of each field. Kernels load and store
 //   whole vectors: lanes past the count may hold anything on entry and anything on return.
