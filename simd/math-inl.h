@@ -15,6 +15,11 @@
 #include "hwy/highway.h"
 #include "simd/layout.h"
 
+// A lambda in a hot loop: on the target, and inlined, which compilers do not always do unasked.
+#ifndef SHEAF_LAMBDA
+#define SHEAF_LAMBDA HWY_ATTR __attribute__((always_inline))
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -38,7 +43,17 @@ HWY_INLINE hn::Vec<WideLanes<double>> Widen(hn::Vec<WideLanes<double>> v) { retu
 template <typename Real, class V>
 HWY_INLINE hn::Vec<NarrowLanes<Real>> Narrow(V v) {
   if constexpr (std::is_same_v<Real, float>) {
-    return hn::DemoteTo(NarrowLanes<float>(), v);
+    const NarrowLanes<float> d;
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+    // There DemoteTo gives the largest float for what overflows, everywhere else infinity.
+    double wide[kMaxLanes];
+    float narrow[kMaxLanes];
+    hn::StoreU(v, WideLanes<float>(), wide);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) narrow[i] = static_cast<float>(wide[i]);
+    return hn::LoadU(d, narrow);
+#else
+    return hn::DemoteTo(d, v);
+#endif
   } else {
     return v;
   }
@@ -101,6 +116,23 @@ HWY_INLINE hn::Vec<D> Fetch(D d, IdPattern pattern, const hn::TFromD<D>* HWY_RES
   if (pattern == IdPattern::kRun) return hn::LoadU(d, array + first);
   if (pattern == IdPattern::kSame) return hn::Set(d, array[first]);
   return GatherAt(d, array, ids);
+}
+
+template <class D>
+HWY_INLINE hn::Mask<D> NoLanes(D d) {
+  return hn::MaskFromVec(hn::Zero(d));
+}
+template <class D>
+HWY_INLINE hn::Mask<D> AllLanes(D d) {
+  return hn::Eq(hn::Zero(d), hn::Zero(d));
+}
+
+// Bit i: lane i.
+template <class D>
+HWY_INLINE std::uint32_t MaskBits(D d, hn::Mask<D> mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0] | static_cast<std::uint32_t>(bits[1]) << 8;
 }
 
 template <class D, class V = hn::Vec<D>>

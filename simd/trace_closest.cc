@@ -6,39 +6,28 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
-#include "simd/hits-inl.h"
+#include "simd/trace-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
-void TraceClosestLanes(const GeometryView<Real>& geometry, const RayView<Real>& rays,
+void TraceClosestLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                        const RayIntervals<Real>& intervals, std::uint32_t count,
-                       const HitOutput<Real>& hits) {
+                       Coherence coherence, const HitOutput<Real>& hits) {
   const Lanes<Real> d;
-  const IdLanes<Lanes<Real>> di;
-  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
-    auto lanes = LanesBelow(d, i, count);
-    const auto t_min = LoadTMin(d, intervals, i);
-    auto t_best = LoadTMax(d, intervals, i);
-    auto u_best = hn::Zero(d), v_best = hn::Zero(d);
-    auto id_best = hn::Set(di, hn::TFromD<decltype(di)>{kNoPrimitive});
-    // Hits at most at t_best arrive here: a closer one wins, an equal one where its id is lower.
-    ForEachHit(d, geometry, rays, i, t_min, t_best, lanes,
-               [&](auto hit, std::uint32_t id, auto t, auto u, auto v) HWY_ATTR {
-                 const auto ids = hn::Set(di, hn::TFromD<decltype(di)>{id});
-                 const auto lower = hn::RebindMask(d, hn::Lt(ids, id_best));
-                 const auto closer = hn::And(hit, hn::Or(hn::Lt(t, t_best), lower));
-                 t_best = hn::IfThenElse(closer, t, t_best);
-                 u_best = hn::IfThenElse(closer, u, u_best);
-                 v_best = hn::IfThenElse(closer, v, v_best);
-                 id_best = hn::IfThenElse(hn::RebindMask(di, closer), ids, id_best);
-               });
-    hn::StoreU(t_best, d, hits.t + i);
-    hn::StoreU(u_best, d, hits.u + i);
-    hn::StoreU(v_best, d, hits.v + i);
-    StoreIds(d, id_best, hits.primitive + i);
-  }
+  TraceBatch<Query::kClosest>(tree, rays, intervals, count, coherence,
+                              [&](const Packet<Real>& packet, std::uint32_t i) HWY_ATTR {
+                                const auto id = LoadIds(d, packet.id);
+                                const auto none = hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive);
+                                const auto missed = hn::RebindMask(d, hn::Eq(id, none));
+                                const auto t = hn::Load(d, packet.t_best);
+                                hn::StoreU(hn::IfThenElse(missed, LoadTMax(d, intervals, i), t), d,
+                                           hits.t + i);
+                                hn::StoreU(hn::Load(d, packet.u), d, hits.u + i);
+                                hn::StoreU(hn::Load(d, packet.v), d, hits.v + i);
+                                StoreIds(d, id, hits.primitive + i);
+                              });
 }
 
 constexpr auto& TraceClosestF32 = TraceClosestLanes<float>;
@@ -54,10 +43,10 @@ HWY_EXPORT(TraceClosestF32);
 HWY_EXPORT(TraceClosestF64);
 
 template <typename Real>
-void TraceClosest(const GeometryView<Real>& geometry, const RayView<Real>& rays,
-                  const RayIntervals<Real>& intervals, std::uint32_t count,
+void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
+                  const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                   const HitOutput<Real>& hits) {
-  SHEAF_DISPATCH(Real, TraceClosest)(geometry, rays, intervals, count, hits);
+  SHEAF_DISPATCH(Real, TraceClosest)(tree, rays, intervals, count, coherence, hits);
 }
 template decltype(TraceClosest<float>) TraceClosest<float>;
 template decltype(TraceClosest<double>) TraceClosest<double>;

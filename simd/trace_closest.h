@@ -6,13 +6,14 @@
 
 namespace sheaf::simd {
 
-// Writes hits[0, count). Rays may be in any order and of any coherence; equal t goes to the lowest
-// primitive id. A ray with a component that is not finite, without a direction or with t_min >
-// t_max misses. Bits: as sheaf::scalar::TraceClosest, on every target. Reads and writes
-// PaddedCount(count) lanes.
+// Writes hits[0, count). Rays may be in any order and of any coherence, whatever `coherence` says;
+// equal t goes to the lowest primitive id. A ray with a component that is not finite, without a
+// direction or with t_min > t_max misses. Rays beyond the limits of box tests (layout.h), and those
+// with t_min < 0, are tested against every primitive. Bits: as sheaf::scalar::TraceClosest, on
+// every target. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void TraceClosest(const GeometryView<Real>& geometry, const RayView<Real>& rays,
-                  const RayIntervals<Real>& intervals, std::uint32_t count,
+void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
+                  const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                   const HitOutput<Real>& hits);
 
 }  // namespace sheaf::simd

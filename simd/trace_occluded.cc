@@ -5,32 +5,26 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
-#include "simd/hits-inl.h"
+#include "simd/trace-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
-void TraceOccludedLanes(const GeometryView<Real>& geometry, const RayView<Real>& rays,
+void TraceOccludedLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                         const RayIntervals<Real>& intervals, std::uint32_t count,
-                        std::uint32_t* occluded) {
+                        Coherence coherence, std::uint32_t* occluded) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
-  for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
-    auto open = LanesBelow(d, i, count);
-    auto blocked = hn::MaskFromVec(hn::Zero(d));
-    const auto t_min = LoadTMin(d, intervals, i);
-    auto t_max = LoadTMax(d, intervals, i);
-    // The first hit closes a lane; which one it is does not matter.
-    ForEachHit(d, geometry, rays, i, t_min, t_max, open,
-               [&](auto hit, std::uint32_t /*id*/, auto /*t*/, auto /*u*/, auto /*v*/) HWY_ATTR {
-                 blocked = hn::Or(blocked, hit);
-                 open = hn::AndNot(hit, open);
-               });
-    const auto one = hn::Set(di, hn::TFromD<decltype(di)>{1});
-    StoreIds(d, hn::IfThenElseZero(hn::RebindMask(di, blocked), one), occluded + i);
-  }
+  TraceBatch<Query::kOccluded>(
+      tree, rays, intervals, count, coherence,
+      [&](const Packet<Real>& packet, std::uint32_t i) HWY_ATTR {
+        const auto hit = hn::Ne(LoadIds(d, packet.id), hn::Set(di, kNoPrimitive));
+        using Id = hn::TFromD<decltype(di)>;
+        StoreIds(d, hn::IfThenElseZero(hit, hn::Set(di, Id{1})), occluded + i);
+      });
 }
+
 constexpr auto& TraceOccludedF32 = TraceOccludedLanes<float>;
 constexpr auto& TraceOccludedF64 = TraceOccludedLanes<double>;
 
@@ -44,10 +38,10 @@ HWY_EXPORT(TraceOccludedF32);
 HWY_EXPORT(TraceOccludedF64);
 
 template <typename Real>
-void TraceOccluded(const GeometryView<Real>& geometry, const RayView<Real>& rays,
-                   const RayIntervals<Real>& intervals, std::uint32_t count,
+void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
+                   const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                    std::uint32_t* occluded) {
-  SHEAF_DISPATCH(Real, TraceOccluded)(geometry, rays, intervals, count, occluded);
+  SHEAF_DISPATCH(Real, TraceOccluded)(tree, rays, intervals, count, coherence, occluded);
 }
 template decltype(TraceOccluded<float>) TraceOccluded<float>;
 template decltype(TraceOccluded<double>) TraceOccluded<double>;

@@ -9,8 +9,8 @@ namespace sheaf::simd {
 // Writes occluded[0, count): 1 where some primitive lies within the ray's interval, else 0. The
 // rays as in TraceClosest. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void TraceOccluded(const GeometryView<Real>& geometry, const RayView<Real>& rays,
-                   const RayIntervals<Real>& intervals, std::uint32_t count,
+void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
+                   const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                    std::uint32_t* occluded);
 
 }  // namespace sheaf::simd

@@ -1,5 +1,8 @@
-// A packet of rays against one triangle: src/scalar/intersect_triangle.h (Woop, Benthin, Wald 2013,
-// unfused).
+// Pairs of a ray and a triangle, one a lane: src/scalar/intersect_triangle.h (Woop, Benthin, Wald
+// 2013, unfused).
+//
+// A packet meets one triangle with the triangle in every lane, a ray meets several with the ray in
+// every lane.
 #if defined(SHEAF_SIMD_TRIANGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRIANGLE_INL_H_
 #undef SHEAF_SIMD_TRIANGLE_INL_H_
@@ -12,64 +15,83 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-// Lanes whose direction is dominated by `axis`; x wins ties, then y (ShearOf).
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE hn::Mask<D> DominatedBy(D /*d*/, int axis, V dx, V dy, V dz) {
-  const V ax = hn::Abs(dx), ay = hn::Abs(dy), az = hn::Abs(dz);
-  const auto x = hn::And(hn::Ge(ax, ay), hn::Ge(ax, az));
-  if (axis == 0) return x;
-  const auto y = hn::AndNot(x, hn::Ge(ay, az));
-  return axis == 1 ? y : hn::Not(hn::Or(x, y));
+// std::min(a, b) and std::max(a, b), down to the sign of zero.
+template <class V>
+HWY_INLINE V StrictMin(V a, V b) {
+  return hn::IfThenElse(hn::Lt(b, a), b, a);
+}
+template <class V>
+HWY_INLINE V StrictMax(V a, V b) {
+  return hn::IfThenElse(hn::Lt(a, b), b, a);
 }
 
-// The triangles' vertices with their axes in the order kx, ky, kz of a shear.
-template <typename Real>
-struct ShearedVertices {
-  const Real* HWY_RESTRICT x[3];
-  const Real* HWY_RESTRICT y[3];
-  const Real* HWY_RESTRICT z[3];
+// Lanes where `position` lies outside the triangle's extent along an axis, with slack: ExtentOf and
+// IsOutside. (The sign of a zero makes no difference here, so the target's Min and Max will do.)
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> IsOutsideExtent(D d, V position, V a, V b, V c) {
+  using Real = hn::TFromD<D>;
+  const V low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
+  const V slack =
+      hn::Mul(hn::Max(hn::Neg(low), high), hn::Set(d, 4 * std::numeric_limits<Real>::epsilon()));
+  return hn::Or(hn::Lt(position, hn::Sub(low, slack)), hn::Gt(position, hn::Add(high, slack)));
+}
 
-  ShearedVertices(const TriangleArrays<Real>& triangles, int kz) {
-    for (int vertex = 0; vertex < 3; ++vertex) {
-      x[vertex] = triangles.vertex[vertex][(kz + 1) % 3];
-      y[vertex] = triangles.vertex[vertex][(kz + 2) % 3];
-      z[vertex] = triangles.vertex[vertex][kz];
-    }
-  }
-};
+// One axis of KeepInExtent: narrows [enter, leave].
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void NarrowToExtent(D d, V direction, V a, V b, V c, V& enter, V& leave) {
+  using Real = hn::TFromD<D>;
+  const V low = StrictMin(StrictMin(a, b), c), high = StrictMax(StrictMax(a, b), c);
+  const V slack =
+      hn::Mul(StrictMax(hn::Neg(low), high), hn::Set(d, 4 * std::numeric_limits<Real>::epsilon()));
+  const V from = hn::Sub(low, slack), to = hn::Add(high, slack), zero = hn::Zero(d);
+  const auto forward = hn::Gt(direction, zero), still = hn::Eq(direction, zero);
+  const V first = hn::Div(hn::IfThenElse(forward, from, to), direction);
+  const V last = hn::Div(hn::IfThenElse(forward, to, from), direction);
+  // A ray that does not move along the axis is in the extent everywhere or nowhere.
+  const auto nowhere = hn::And(still, hn::Or(hn::Gt(from, zero), hn::Lt(to, zero)));
+  leave = hn::IfThenElse(nowhere, hn::Neg(hn::Inf(d)), leave);
+  enter = hn::IfThenElse(still, enter, StrictMax(enter, first));
+  leave = hn::IfThenElse(still, leave, StrictMin(leave, last));
+}
 
-// Lanes inside the triangle's edges, with t and barycentrics; t, u and v are written only where
-// some lane is. The origin's axes are in the order kx, ky, kz; (sx, sy) is the shear, dz the
-// direction along kz.
+// Lanes of `lanes` inside the triangle's edges, with t. All coordinates have their axes in the
+// order kx, ky, kz of the ray's shear; vertices are relative to the origin, (sx, sy) is the shear.
+// Writes t, v, w and det only where some lane is inside; t is NaN where the ray misses after all.
 template <class D, class M, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE M HitTriangle(D d, V ox, V oy, V oz, V sx, V sy, V dz,
-                         const ShearedVertices<Real>& vertices, std::uint32_t index, M lanes, V& t,
-                         V& u, V& v) {
-  const V az = hn::Sub(hn::Set(d, vertices.z[0][index]), oz);
-  const V bz = hn::Sub(hn::Set(d, vertices.z[1][index]), oz);
-  const V cz = hn::Sub(hn::Set(d, vertices.z[2][index]), oz);
-  const V ax = hn::Sub(hn::Sub(hn::Set(d, vertices.x[0][index]), ox), hn::Mul(sx, az));
-  const V ay = hn::Sub(hn::Sub(hn::Set(d, vertices.y[0][index]), oy), hn::Mul(sy, az));
-  const V bx = hn::Sub(hn::Sub(hn::Set(d, vertices.x[1][index]), ox), hn::Mul(sx, bz));
-  const V by = hn::Sub(hn::Sub(hn::Set(d, vertices.y[1][index]), oy), hn::Mul(sy, bz));
-  const V cx = hn::Sub(hn::Sub(hn::Set(d, vertices.x[2][index]), ox), hn::Mul(sx, cz));
-  const V cy = hn::Sub(hn::Sub(hn::Set(d, vertices.y[2][index]), oy), hn::Mul(sy, cz));
+HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V cz, V sx, V sy,
+                         V dx, V dy, V dz, M lanes, V& t, V& v, V& w, V& det) {
+  const V asx = hn::Sub(ax, hn::Mul(sx, az)), asy = hn::Sub(ay, hn::Mul(sy, az));
+  const V bsx = hn::Sub(bx, hn::Mul(sx, bz)), bsy = hn::Sub(by, hn::Mul(sy, bz));
+  const V csx = hn::Sub(cx, hn::Mul(sx, cz)), csy = hn::Sub(cy, hn::Mul(sy, cz));
 
-  const V ua = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
-  const V vb = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
-  const V wc = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
+  const V ua = hn::Sub(hn::Mul(csx, bsy), hn::Mul(csy, bsx));
+  const V vb = hn::Sub(hn::Mul(asx, csy), hn::Mul(asy, csx));
+  const V wc = hn::Sub(hn::Mul(bsx, asy), hn::Mul(bsy, asx));
   // Every comparison is false for NaN: the lane misses.
   const V zero = hn::Zero(d);
   const M positive = hn::And(hn::And(hn::Ge(ua, zero), hn::Ge(vb, zero)), hn::Ge(wc, zero));
   const M negative = hn::And(hn::And(hn::Le(ua, zero), hn::Le(vb, zero)), hn::Le(wc, zero));
-  const V det = hn::Add(hn::Add(ua, vb), wc);
-  const M inside = hn::And(hn::And(lanes, hn::Or(positive, negative)), hn::Ne(det, zero));
+  const V sum = hn::Add(hn::Add(ua, vb), wc);
+  const M inside = hn::And(hn::And(lanes, hn::Or(positive, negative)), hn::Ne(sum, zero));
   if (hn::AllFalse(d, inside)) return inside;
 
   const V scaled_t = hn::Add(hn::Add(hn::Mul(ua, az), hn::Mul(vb, bz)), hn::Mul(wc, cz));
-  t = hn::Div(hn::Div(scaled_t, det), dz);
-  u = hn::Div(vb, det);
-  v = hn::Div(wc, det);
+  t = hn::Div(hn::Div(scaled_t, sum), dz);
+  const M outside = hn::And(inside, hn::Or(IsOutsideExtent(d, hn::Mul(t, dx), ax, bx, cx),
+                                           IsOutsideExtent(d, hn::Mul(t, dy), ay, by, cy)));
+  if (HWY_UNLIKELY(!hn::AllFalse(d, outside))) {
+    V enter = hn::Neg(hn::Inf(d)), leave = hn::Inf(d);
+    NarrowToExtent(d, dx, ax, bx, cx, enter, leave);
+    NarrowToExtent(d, dy, ay, by, cy, enter, leave);
+    NarrowToExtent(d, dz, az, bz, cz, enter, leave);
+    V kept = hn::IfThenElse(hn::Lt(t, enter), enter, t);
+    kept = hn::IfThenElse(hn::Gt(kept, leave), leave, kept);
+    const V nan = hn::Set(d, std::numeric_limits<Real>::quiet_NaN());
+    t = hn::IfThenElse(outside, hn::IfThenElse(hn::Le(enter, leave), kept, nan), t);
+  }
+  v = vb;
+  w = wc;
+  det = sum;
   return inside;
 }
 

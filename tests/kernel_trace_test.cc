@@ -1,15 +1,20 @@
 // The tracing kernels against src/scalar, bit by bit, on every target.
-#include <bit>
+#include <algorithm>
 #include <cstring>
+#include <glm/common.hpp>
+#include <utility>
 
 #include "random_scene.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
-#include "src/scalar/trace.h"
+#include "src/bvh/build_tree.h"
+#include "src/scalar/trace_tree.h"
 #include "targets.h"
 
 namespace sheaf {
 namespace {
+
+constexpr Coherence kHints[] = {Coherence::kUnknown, Coherence::kIncoherent, Coherence::kCoherent};
 
 template <typename Real>
 bool SameBits(Real a, Real b) {
@@ -51,29 +56,73 @@ struct RayBatch {
   RayIntervals<Real> intervals() const { return {t_min.data() + offset, t_max.data() + offset}; }
 };
 
+// A scene, its tree, and rays with what the specification makes of them, over every primitive and
+// without a tree.
 template <typename Real>
-void CheckTraces(const CompiledScene<Real>& scene, const std::vector<scalar::Ray<Real>>& rays,
-                 std::uint32_t offset) {
-  RayBatch<Real> batch(rays, offset);
+struct Expected {
+  CompiledScene<Real> scene;
+  Tree<Real> tree;
+  std::vector<scalar::Ray<Real>> rays;
+  std::vector<scalar::Hit<Real>> hits;
+  std::vector<bool> occluded;
+
+  Expected(const Scene& from, std::vector<scalar::Ray<Real>> of)
+      : scene(CompileScene<Real>(from)), rays(std::move(of)) {
+    Result<Tree<Real>> built = BuildTree<Real>(scene.geometry());
+    REQUIRE(built);
+    tree = std::move(built).value();
+    for (const scalar::Ray<Real>& ray : rays) {
+      hits.push_back(scalar::TraceClosest(scene.geometry(), ray));
+      occluded.push_back(scalar::TraceOccluded(scene.geometry(), ray));
+    }
+  }
+  std::uint32_t hit_count() const {
+    return static_cast<std::uint32_t>(std::count(occluded.begin(), occluded.end(), true));
+  }
+};
+
+// The interval of a missing ray may be NaN, whose bits are nobody's promise.
+template <typename Real>
+bool SameHit(const scalar::Hit<Real>& a, const scalar::Hit<Real>& b) {
+  const bool same_t = SameBits(a.t, b.t) || (a.t != a.t && b.t != b.t);
+  return same_t && SameBits(a.u, b.u) && SameBits(a.v, b.v) && a.primitive == b.primitive;
+}
+
+// The kernels on the target in force.
+template <typename Real>
+void CheckTraces(const Expected<Real>& want, std::uint32_t offset, Coherence coherence) {
+  RayBatch<Real> batch(want.rays, offset);
   HitStream<Real> hits;
   hits.Allocate(batch.count);
   AlignedArray<std::uint32_t> occluded;
   occluded.Allocate(StreamCapacity(batch.count));
-  const GeometryView<Real> geometry = scene.geometry();
-  simd::TraceClosest(geometry, batch.view(), batch.intervals(), batch.count, hits.output());
-  simd::TraceOccluded(geometry, batch.view(), batch.intervals(), batch.count, occluded.data());
+  const TreeView<Real> tree = want.tree.view();
+  simd::TraceClosest(tree, batch.view(), batch.intervals(), batch.count, coherence, hits.output());
+  simd::TraceOccluded(tree, batch.view(), batch.intervals(), batch.count, coherence,
+                      occluded.data());
   const auto got = hits.view();
   std::uint32_t wrong_hits = 0, wrong_shadows = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
-    const scalar::Hit<Real> want = scalar::TraceClosest(geometry, rays[i]);
-    // The interval of a missing ray may be NaN, whose bits are nobody's promise.
-    const bool same_t = SameBits(got.t[i], want.t) || (got.t[i] != got.t[i] && want.t != want.t);
-    wrong_hits += !(same_t && SameBits(got.u[i], want.u) && SameBits(got.v[i], want.v) &&
-                    got.primitive[i] == want.primitive);
-    wrong_shadows += occluded[i] != (scalar::TraceOccluded(geometry, rays[i]) ? 1u : 0u);
+    const scalar::Hit<Real> hit = {got.t[i], got.primitive[i], got.u[i], got.v[i]};
+    wrong_hits += !SameHit(hit, want.hits[i]);
+    wrong_shadows += occluded[i] != (want.occluded[i] ? 1u : 0u);
   }
   CHECK(wrong_hits == 0);
   CHECK(wrong_shadows == 0);
+}
+
+// The baseline through the tree, and the kernels on every target with every hint.
+template <typename Real>
+void CheckEverywhere(const Expected<Real>& want) {
+  std::uint32_t wrong = 0;
+  for (std::size_t i = 0; i < want.rays.size(); ++i) {
+    wrong += !SameHit(scalar::TraceClosest(want.tree.view(), want.rays[i]), want.hits[i]);
+    wrong += scalar::TraceOccluded(want.tree.view(), want.rays[i]) != want.occluded[i];
+  }
+  CHECK(wrong == 0);
+  ForEachTarget([&](const std::string&) {
+    for (const Coherence coherence : kHints) CheckTraces(want, 0, coherence);
+  });
 }
 
 template <typename Real>
@@ -86,74 +135,207 @@ std::vector<scalar::Ray<Real>> RandomRays(Random& random, std::uint32_t count,
 
 TEST_CASE_TEMPLATE("every count and offset traces as the scalar specification", Real, float,
                    double) {
-  ForEachTarget([](const std::string&) {
-    Random random(1);
-    const CompiledScene<Real> scene = CompileScene<Real>(RandomScene(random, 12));
-    const auto primitives = static_cast<std::uint32_t>(scene.primitives.size());
-    for (std::uint32_t count = 1; count <= 2 * kMaxLanes + 1; ++count) {
+  Random random(1);
+  const Scene scene = RandomScene(random, 12);
+  for (std::uint32_t count = 1; count <= 2 * kMaxLanes + 1; ++count) {
+    const Expected<Real> want(scene, RandomRays<Real>(random, count, 12));
+    ForEachTarget([&](const std::string&) {
       for (std::uint32_t offset = 0; offset < 4; ++offset) {
-        CheckTraces(scene, RandomRays<Real>(random, count, primitives), offset);
+        CheckTraces(want, offset, Coherence::kUnknown);
       }
-    }
-  });
+    });
+  }
 }
 
 TEST_CASE_TEMPLATE("random scenes trace as the scalar specification", Real, float, double) {
-  ForEachTarget([](const std::string&) {
-    Random random(2);
-    for (int round = 0; round < 40; ++round) {
-      const CompiledScene<Real> scene = CompileScene<Real>(RandomScene(random, round));
-      const auto primitives = static_cast<std::uint32_t>(scene.primitives.size());
-      CheckTraces(scene, RandomRays<Real>(random, 512, primitives), 0);
+  Random random(2);
+  for (int objects = 0; objects < 40; ++objects) {
+    const auto count = static_cast<std::uint32_t>(objects);
+    CheckEverywhere<Real>({RandomScene(random, objects), RandomRays<Real>(random, 512, count)});
+  }
+  CheckEverywhere<Real>({RandomScene(random, 3000), RandomRays<Real>(random, 2048, 3000)});
+}
+
+// Many small primitives around the origin, so that trees are deep and rays pass many of them.
+Scene CrowdedScene(Random& random, int count) {
+  Scene scene;
+  scene.materials.push_back({});
+  for (int i = 0; i < count; ++i) {
+    const Vec3d at = UniformPoint(random, -4, 4);
+    Object object;
+    if (i % 3 == 0) {
+      object.shape = Sphere{at, Uniform(random, 0.02, 0.2)};
+    } else {
+      object.shape = Triangle{
+          {at, at + UniformPoint(random, -0.4, 0.4), at + UniformPoint(random, -0.4, 0.4)}};
     }
-  });
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
+// Rays of one origin through a grid in blocks of eight by eight, as of a camera or a light: tiles.
+// `towards` is the middle direction, `spread` the grid's size.
+template <typename Real>
+std::vector<scalar::Ray<Real>> GridRays(Random& random, Vec3d origin, Vec3d towards,
+                                        double spread) {
+  std::vector<scalar::Ray<Real>> rays;
+  const Vec3d right = Vec3d(towards.y, towards.z, towards.x), up = Vec3d(towards.z, 0, -towards.x);
+  for (std::uint32_t i = 0; i < 1024; ++i) {
+    const std::uint32_t x = (i & 7) + (i >> 6 & 3) * 8, y = (i >> 3 & 7) + (i >> 8) * 8;
+    const double a = (x / 32.0 - 0.5) * spread, b = (y / 32.0 - 0.5) * spread;
+    // Lengths differ, as those of shadow rays do.
+    const Vec3d direction = (towards + a * right + b * up) * Uniform(random, 0.2, 5);
+    scalar::Ray<Real> ray;
+    ray.origin = scalar::Vec3<double>{origin.x, origin.y, origin.z}.To<Real>();
+    ray.direction = scalar::Vec3<double>{direction.x, direction.y, direction.z}.To<Real>();
+    if (random() % 16 == 0) ray.t_max = static_cast<Real>(Uniform(random, 0, 3));
+    if (random() % 64 == 0) ray.direction.x = std::numeric_limits<Real>::quiet_NaN();
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+TEST_CASE_TEMPLATE("rays of one origin trace as the scalar specification", Real, float, double) {
+  Random random(3);
+  std::uint32_t hits = 0;
+  for (int round = 0; round < 12; ++round) {
+    const Vec3d origin = UniformPoint(random, -6, 6) * (round % 4 == 0 ? 100.0 : 1.0);
+    const Vec3d towards = UniformPoint(random, -1, 1) - origin;
+    // From a few rays a leaf to many leaves a ray; the last look along an axis.
+    const Vec3d middle = round < 9 ? towards : Vec3d(0, round == 9, round == 10 ? -1 : 1);
+    const double spread = round % 3 == 0 ? 0.01 : 0.5;
+    const Expected<Real> want(CrowdedScene(random, 1500),
+                              GridRays<Real>(random, origin, middle, spread));
+    hits += want.hit_count();
+    CheckEverywhere(want);
+  }
+  CHECK(hits > 2000);
+}
+
+// Rays in the planes of triangles, through their vertices, along axes and box faces: where t is
+// mostly rounding error and boxes are touched at their rims.
+TEST_CASE_TEMPLATE("degenerate rays trace as the scalar specification", Real, float, double) {
+  Random random(4);
+  std::uint32_t hits = 0;
+  for (int round = 0; round < 8; ++round) {
+    Scene scene;
+    scene.materials.push_back({});
+    std::vector<scalar::Ray<Real>> rays;
+    for (int i = 0; i < 200; ++i) {
+      Vec3d v[3];
+      for (Vec3d& p : v) p = UniformPoint(random, -4, 4);
+      if (round % 2) {  // an integer grid: flat boxes that touch
+        for (Vec3d& p : v) p = glm::round(p);
+      }
+      if (i % 4 == 0) v[2] = v[1] + UniformPoint(random, -1e-5, 1e-5);  // slivers
+      scene.objects.push_back({"", Triangle{{v[0], v[1], v[2]}}, 0});
+      for (int k = 0; k < 6; ++k) {
+        const double a = Uniform(random, -0.2, 1.2);
+        const Vec3d in_plane = v[0] + a * (v[1] - v[0]) + Uniform(random, 0, 1) * (v[2] - v[0]);
+        const Vec3d out = k < 3 ? v[k] + (v[k] - v[(k + 1) % 3]) * Uniform(random, 0, 3)
+                                : UniformPoint(random, -6, 6);
+        Vec3d origin = out;
+        const Vec3d target = k % 3 == 0 ? v[k / 3] : in_plane;
+        if (k == 5) origin = target + Vec3d(0, 0, 5);
+        if (k == 4) origin = target - Vec3d(3, 0, 0);
+        const auto real = [](const Vec3d& p) {
+          return scalar::Vec3<double>{p.x, p.y, p.z}.To<Real>();
+        };
+        scalar::Ray<Real> ray{real(origin), real(target) - real(origin)};
+        if (k == 5) ray.direction = {round % 4 < 2 ? Real(0) : -Real(0), Real(0), Real(-1)};
+        if (k == 4) ray.direction = {Real(1), Real(1e-9), Real(-1e-30)};
+        rays.push_back(ray);
+      }
+    }
+    const Expected<Real> want(scene, rays);
+    hits += want.hit_count();
+    CheckEverywhere(want);
+  }
+  CHECK(hits > 2000);
+}
+
+// Beyond the limits of box tests: the same hits, only slower.
+TEST_CASE_TEMPLATE("rays and scenes without scale trace as the scalar specification", Real, float,
+                   double) {
+  Random random(5);
+  for (const double scale : {1e-25, 1e-12, 1.0, 1e10, 1e14, 1e18}) {
+    Scene scene = CrowdedScene(random, 60);
+    for (Object& object : scene.objects) {
+      if (Sphere* sphere = std::get_if<Sphere>(&object.shape)) {
+        sphere->center *= scale;
+        sphere->radius *= scale;
+      } else {
+        for (Vec3d& v : std::get<Triangle>(object.shape).vertices) v *= scale;
+      }
+    }
+    std::vector<scalar::Ray<Real>> rays;
+    for (const double length : {1e-30, 1e-20, 1.0, 1e17}) {
+      for (int i = 0; i < 128; ++i) {
+        const Vec3d from = UniformPoint(random, -6, 6), to = UniformPoint(random, -2, 2);
+        const Vec3d origin = from * scale, direction = (to - from) * length;
+        rays.push_back({scalar::Vec3<double>{origin.x, origin.y, origin.z}.To<Real>(),
+                        scalar::Vec3<double>{direction.x, direction.y, direction.z}.To<Real>()});
+        if (i % 8 == 0) rays.back().t_min = Real(-1);
+      }
+    }
+    CheckEverywhere<Real>({scene, rays});
+  }
 }
 
 // Rays that graze spheres far away, where a float test misjudges: the screen must keep them.
 TEST_CASE_TEMPLATE("rays near tangency at any distance trace as the scalar specification", Real,
                    float, double) {
-  ForEachTarget([](const std::string&) {
-    Random random(3);
-    std::uint32_t hits = 0;
-    for (double distance = 1; distance <= 1e7; distance *= 10) {
-      Scene scene;
-      scene.materials.push_back({});
-      scene.objects.push_back({"", Sphere{UniformPoint(random, -1, 1), 1.0}, 0});
-      const CompiledScene<Real> compiled = CompileScene<Real>(scene);
-      const Sphere& sphere = std::get<Sphere>(scene.objects[0].shape);
-      std::vector<scalar::Ray<Real>> rays;
-      for (int i = 0; i < 1000; ++i) {
-        const auto axis = scalar::Normalize(scalar::Vec3<double>{
-            Uniform(random, -1, 1), Uniform(random, -1, 1), Uniform(random, -1, 1)});
-        const auto side =
-            scalar::Normalize(scalar::Cross(axis, scalar::Vec3<double>{0.3, -0.5, 0.8}));
-        const scalar::Vec3<double> center{sphere.center.x, sphere.center.y, sphere.center.z};
-        const auto origin = center + axis * (1 + distance);
-        const auto target = center + side * (1 + Uniform(random, -1e-6, 1e-6));
-        rays.push_back({origin.To<Real>(), (target - origin).template To<Real>()});
-        hits += scalar::TraceOccluded(compiled.geometry(), rays.back());
-      }
-      CheckTraces(compiled, rays, 0);
+  Random random(6);
+  std::uint32_t hits = 0;
+  for (double distance = 1; distance <= 1e7; distance *= 10) {
+    Scene scene;
+    scene.materials.push_back({});
+    scene.objects.push_back({"", Sphere{UniformPoint(random, -1, 1), 1.0}, 0});
+    const Sphere sphere = std::get<Sphere>(scene.objects[0].shape);
+    // Others around it, so that there is a tree.
+    for (int i = 0; i < 40; ++i) {
+      scene.objects.push_back({"", Sphere{UniformPoint(random, 3, 9), 0.5}, 0});
     }
-    CHECK(hits > 1000);
-    CHECK(hits < 7000);
-  });
+    std::vector<scalar::Ray<Real>> rays;
+    for (int i = 0; i < 1000; ++i) {
+      const auto axis = scalar::Normalize(scalar::Vec3<double>{
+          Uniform(random, -1, 1), Uniform(random, -1, 1), Uniform(random, -1, 1)});
+      const auto side =
+          scalar::Normalize(scalar::Cross(axis, scalar::Vec3<double>{0.3, -0.5, 0.8}));
+      const scalar::Vec3<double> center{sphere.center.x, sphere.center.y, sphere.center.z};
+      const auto origin = center + axis * (1 + distance);
+      const auto target = center + side * (1 + Uniform(random, -1e-6, 1e-6));
+      rays.push_back({origin.To<Real>(), (target - origin).template To<Real>()});
+    }
+    const Expected<Real> want(scene, rays);
+    hits += want.hit_count();
+    CheckEverywhere(want);
+  }
+  CHECK(hits > 1000);
+  CHECK(hits < 7000);
 }
 
 TEST_CASE("a miss is t_max, no primitive and no parameters") {
-  ForEachTarget([](const std::string&) {
-    const CompiledScene<float> scene = CompileScene<float>(Scene{});
-    const std::vector<scalar::Ray<float>> rays(5, {{0, 0, 0}, {0, 0, 1}, kNoPrimitive, 0.0f, 7.0f});
-    RayBatch<float> batch(rays, 0);
-    HitStream<float> hits;
-    hits.Allocate(5);
-    simd::TraceClosest(scene.geometry(), batch.view(), batch.intervals(), 5, hits.output());
-    for (int i = 0; i < 5; ++i) {
-      CHECK(hits.view().t[i] == 7.0f);
-      CHECK(hits.view().primitive[i] == kNoPrimitive);
-      CHECK(hits.view().u[i] == 0.0f);
-    }
-  });
+  const std::vector<scalar::Ray<float>> rays(5, {{0, 0, 0}, {0, 0, 1}, kNoPrimitive, 0.0f, 7.0f});
+  Random random(7);
+  for (const int objects : {0, 300}) {
+    Scene scene = objects ? CrowdedScene(random, objects) : Scene{};
+    for (Object& object : scene.objects) object.shape = Sphere{{20, 0, 0}, 1.0};
+    const Expected<float> want(scene, rays);
+    ForEachTarget([&](const std::string&) {
+      RayBatch<float> batch(rays, 0);
+      HitStream<float> hits;
+      hits.Allocate(5);
+      simd::TraceClosest(want.tree.view(), batch.view(), batch.intervals(), 5, Coherence::kUnknown,
+                         hits.output());
+      for (int i = 0; i < 5; ++i) {
+        CHECK(hits.view().t[i] == 7.0f);
+        CHECK(hits.view().primitive[i] == kNoPrimitive);
+        CHECK(hits.view().u[i] == 0.0f);
+      }
+    });
+  }
 }
 
 }  // namespace

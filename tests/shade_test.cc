@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "random_scene.h"
+#include "src/bvh/build_tree.h"
 #include "src/scalar/render_pixel.h"
 
 namespace sheaf {
@@ -188,7 +189,9 @@ Vec3<float> UnderOneLight(const LightData<float>& light, const MaterialData<floa
   scene.materials.push_back({});
   for (const Sphere& sphere : spheres) scene.objects.push_back({"", sphere, 0});
   const CompiledScene<float> compiled = CompileScene<float>(scene);
+  const Result<Tree<float>> tree = BuildTree<float>(compiled.geometry());
   FrameView<float> frame{};
+  frame.tree = tree.value().view();
   frame.geometry = compiled.geometry();
   frame.lights = {&light, 1};
   Surface<float> surface = Floor();

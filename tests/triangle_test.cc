@@ -14,6 +14,7 @@
 
 #include "random_scene.h"
 #include "simd/trace_closest.h"
+#include "src/bvh/build_tree.h"
 #include "src/scalar/trace.h"
 #include "targets.h"
 
@@ -62,7 +63,7 @@ int CountLeaks(const GeometryView<float>& geometry, const std::vector<Ray<float>
   return leaks;
 }
 
-int CountKernelLeaks(const GeometryView<float>& geometry, const std::vector<Ray<float>>& rays,
+int CountKernelLeaks(const TreeView<float>& tree, const std::vector<Ray<float>>& rays,
                      float t_max) {
   const auto count = static_cast<std::uint32_t>(rays.size());
   RayStream<float> stream;
@@ -75,7 +76,8 @@ int CountKernelLeaks(const GeometryView<float>& geometry, const std::vector<Ray<
     out.direction_x[i] = rays[i].direction.x, out.direction_y[i] = rays[i].direction.y;
     out.direction_z[i] = rays[i].direction.z;
   }
-  simd::TraceClosest(geometry, stream.view(), RayIntervals<float>{}, count, hits.output());
+  simd::TraceClosest(tree, stream.view(), RayIntervals<float>{}, count, Coherence::kUnknown,
+                     hits.output());
   int leaks = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     leaks += hits.view().primitive[i] == kNoPrimitive || !(hits.view().t[i] <= t_max);
@@ -86,9 +88,11 @@ int CountKernelLeaks(const GeometryView<float>& geometry, const std::vector<Ray<
 void CheckNoLeaks(const Mesh& mesh, const std::vector<Ray<float>>& rays, float t_max = kInfinity) {
   const CompiledScene<float> scene = mesh.Compile();
   REQUIRE_FALSE(rays.empty());
+  const Result<Tree<float>> tree = BuildTree<float>(scene.geometry());
+  REQUIRE(tree);
   CHECK(CountLeaks(scene.geometry(), rays, t_max) == 0);
   ForEachTarget(
-      [&](const std::string&) { CHECK(CountKernelLeaks(scene.geometry(), rays, t_max) == 0); });
+      [&](const std::string&) { CHECK(CountKernelLeaks(tree.value().view(), rays, t_max) == 0); });
 }
 
 // A grid of n x n unit cells, two triangles each, in the plane across `axis`.
@@ -176,7 +180,8 @@ TEST_CASE("a ray exactly at a slanted edge") {
 // IntersectTriangle itself, without what scene compilation leaves out.
 std::optional<scalar::TriangleHit<float>> Intersect(const Ray<float>& ray, Vec3<float> a,
                                                     Vec3<float> b, Vec3<float> c) {
-  return scalar::IntersectTriangle(ray.origin, scalar::ShearOf(ray.direction), {a, b, c});
+  return scalar::IntersectTriangle(ray.origin, ray.direction, scalar::ShearOf(ray.direction),
+                                   {a, b, c});
 }
 
 TEST_CASE("collinear vertices are missed") {

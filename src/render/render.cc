@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simd/target.h"
+#include "src/bvh/build_tree.h"
 #include "src/core/parallel.h"
 #include "src/render/compile_scene.h"
 #include "src/render/sample_pattern.h"
@@ -94,12 +95,15 @@ Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect&
                       const RenderOptions& options, RenderStats& stats, RenderProgress& progress) {
   Clock::time_point start = Clock::now();
   const CompiledScene<Real> compiled = CompileScene<Real>(scene);
+  const Result<Tree<Real>> tree = BuildTree<Real>(compiled.geometry(), options.threads);
+  if (!tree) return Error{ErrorKind::kScene, tree.error().message};
   std::vector<Real> sample_x, sample_y;
   for (const glm::dvec2& point : SamplePattern(options.samples)) {
     sample_x.push_back(static_cast<Real>(point.x));
     sample_y.push_back(static_cast<Real>(point.y));
   }
   FrameView<Real> frame{compiled.geometry(),
+                        tree.value().view(),
                         compiled.primitives,
                         compiled.materials,
                         compiled.lights,

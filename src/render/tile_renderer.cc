@@ -74,7 +74,7 @@ void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth)
 
   auto rays = bundle.rays.view();
   if (depth == 0) rays.source = nullptr;
-  simd::TraceClosest(frame_.geometry, rays, {}, bundle.count, hits_.output());
+  simd::TraceClosest(frame_.tree, rays, {}, bundle.count, Coherence::kUnknown, hits_.output());
   Charge(Phase::kTrace);
   binner_.Bin(hits_.view().primitive, bundle.count, frame_.primitives);
   Charge(Phase::kBin);
@@ -143,7 +143,8 @@ void TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t
   rays_.shadow += size;
   RayIntervals<Real> intervals;
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
-  simd::TraceOccluded(frame_.geometry, shadow_rays_.view(), intervals, size, occluded_.data());
+  simd::TraceOccluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
+                      occluded_.data());
   for (std::uint32_t i = 0; i < size; ++i) lit_[surface_of_ray_[i]] = 1 - occluded_[i];
   Charge(Phase::kShadow);
 }

@@ -18,7 +18,8 @@ struct PrimitiveInfo {
 
 template <typename Real>
 struct FrameView {
-  GeometryView<Real> geometry;
+  GeometryView<Real> geometry;                // what surfaces are read from
+  TreeView<Real> tree;                        // over it: what rays are traced against
   std::span<const PrimitiveInfo> primitives;  // by primitive id
   std::span<const MaterialData<Real>> materials;
   std::span<const LightData<Real>> lights;

@@ -6,11 +6,13 @@
 // inside on both sides: no ray slips between them, at edges or vertices. A fused multiply-add
 // breaks this. Different from the paper: no double-precision fallback (it could only refuse hits
 // within rounding of a silhouette), no winding swap (either sign counts), t by two divisions, so
-// that no product underflows.
+// that no product underflows, and no hit outside the triangle's own extent.
 #ifndef SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
 #define SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "src/scalar/ray.h"
@@ -39,8 +41,58 @@ struct TriangleHit {
   Real u, v;  // barycentric weights of the second and third vertex
 };
 
+// How far beyond a triangle's extent, relative to its reach from the origin, a hit may lie.
+template <typename Real>
+inline constexpr Real kExtentSlack = 4 * std::numeric_limits<Real>::epsilon();
+
+template <typename Real>
+struct Extent {
+  Real low, high;
+};
+
+// The extent of three coordinates relative to the ray's origin, with slack for the rounding of a
+// hit.
+template <typename Real>
+Extent<Real> ExtentOf(Real a, Real b, Real c) {
+  const Real low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
+  const Real slack = std::max(-low, high) * kExtentSlack<Real>;
+  return {low - slack, high + slack};
+}
+
+template <typename Real>
+bool IsOutside(Extent<Real> extent, Real position) {
+  return position < extent.low || position > extent.high;
+}
+
+// For a ray in the triangle's plane, all but, the edge functions are zero or rounding error: t is
+// somewhere between the vertices along kz, but the ray may be nowhere near the triangle there. t
+// then moves to where the ray meets the triangle's box, so that no box around the triangle, of
+// whatever tree, excludes the hit; a ray that does not meet the box misses, which gives NaN. (It
+// opens no gap: what Woop's argument needs are hits of triangles that the ray does meet, once
+// sheared, and the slack covers the rounding of that.)
+template <typename Real>
+Real KeepInExtent(Real t, Vec3<Real> direction, const TriangleShear<Real>& shear, Vec3<Real> a,
+                  Vec3<Real> b, Vec3<Real> c) {
+  constexpr Real kMiss = std::numeric_limits<Real>::quiet_NaN();
+  Real enter = -std::numeric_limits<Real>::infinity(), leave = -enter;
+  for (const int axis : {shear.kx, shear.ky, shear.kz}) {
+    const Extent<Real> extent = ExtentOf(a[axis], b[axis], c[axis]);
+    if (direction[axis] == 0) {
+      if (IsOutside(extent, Real(0))) return kMiss;
+      continue;
+    }
+    const bool forward = direction[axis] > 0;
+    enter = std::max(enter, (forward ? extent.low : extent.high) / direction[axis]);
+    leave = std::min(leave, (forward ? extent.high : extent.low) / direction[axis]);
+  }
+  if (!(enter <= leave)) return kMiss;
+  t = t < enter ? enter : t;  // false for NaN, which stays
+  return t > leave ? leave : t;
+}
+
 template <typename Real>
 SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origin,
+                                                                Vec3<Real> direction,
                                                                 const TriangleShear<Real>& shear,
                                                                 const Vec3<Real> (&vertex)[3]) {
   const Vec3<Real> a = vertex[0] - origin, b = vertex[1] - origin, c = vertex[2] - origin;
@@ -58,7 +110,14 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   if (!inside || !(det != 0)) return std::nullopt;
 
   const Real scaled_t = (u * a[kz] + v * b[kz]) + w * c[kz];
-  return TriangleHit<Real>{(scaled_t / det) / dz, v / det, w / det};
+  Real t = (scaled_t / det) / dz;
+  // Along kz t is a mean of the vertices already.
+  if (IsOutside(ExtentOf(a[kx], b[kx], c[kx]), t * direction[kx]) ||
+      IsOutside(ExtentOf(a[ky], b[ky], c[ky]), t * direction[ky])) {
+    t = KeepInExtent(t, direction, shear, a, b, c);
+    if (std::isnan(t)) return std::nullopt;
+  }
+  return TriangleHit<Real>{t, v / det, w / det};
 }
 
 }  // namespace sheaf::scalar

@@ -15,6 +15,7 @@
 #include "src/scalar/ray_counts.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
+#include "src/scalar/trace_tree.h"
 
 namespace sheaf::scalar {
 
@@ -36,7 +37,7 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& ma
     if (!(incidence.n_dot_l > 0)) continue;
     if (light.casts_shadows) {
       ++tally.shadow;
-      if (TraceOccluded(frame.geometry, ShadowRay(light, surface, incidence))) continue;
+      if (TraceOccluded(frame.tree, ShadowRay(light, surface, incidence))) continue;
     }
     colour = colour + LitBy(light, material, surface, base, incidence);
   }
@@ -70,7 +71,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
     scratch.reflected.clear();
     scratch.refracted.clear();
     for (const Path<Real>& path : scratch.paths) {
-      const Hit<Real> hit = TraceClosest(frame.geometry, path.ray);
+      const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
       if (hit.primitive == kNoPrimitive) {
         Accumulate(sum, path.weight, FromArray(frame.background));
         continue;

@@ -57,7 +57,7 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray,
   if ((ray.source & ~kInsideBit) == triangles.id[i]) return std::nullopt;
   const Vec3<Real> vertices[3] = {TriangleVertex(triangles, i, 0), TriangleVertex(triangles, i, 1),
                                   TriangleVertex(triangles, i, 2)};
-  const auto hit = IntersectTriangle(ray.origin, shear, vertices);
+  const auto hit = IntersectTriangle(ray.origin, ray.direction, shear, vertices);
   if (!hit || !(ray.t_min <= hit->t && hit->t <= ray.t_max)) return std::nullopt;
   return TriangleHit<Real>{hit->t, hit->u, hit->v};
 }

@@ -1,0 +1,67 @@
+// Sheaf, its scalar baseline and Embree on the same rays over the same scene.
+#ifndef SHEAF_BENCH_COMPARE_TRACERS_H_
+#define SHEAF_BENCH_COMPARE_TRACERS_H_
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/embree_peer.h"
+#include "bench/make_rays.h"
+#include "bench/make_scenes.h"
+#include "src/bvh/geometry.h"
+
+namespace sheaf::bench {
+
+// What callers tell Sheaf of their rays. Embree is always told.
+enum class Hints { kGiven, kNone };
+
+struct CompareOptions {
+  int repetitions = 7;
+  std::uint32_t picture_size = 1024;
+  std::vector<std::string> targets;  // of Sheaf, usable ones
+  std::vector<RayKind> kinds;
+  Hints hints = Hints::kGiven;
+};
+
+// Rays whose answers differ, by why. The first three need another t than within 1e-4 of it.
+struct Differences {
+  std::uint32_t embree_missed = 0;  // Sheaf hit; of shadow rays: is in shadow
+  std::uint32_t sheaf_missed = 0;
+  std::uint32_t other_t = 0;    // both hit, at different places
+  std::uint32_t other_tie = 0;  // the same t, another primitive: a shared edge
+
+  std::uint32_t total() const { return embree_missed + sheaf_missed + other_t + other_tie; }
+};
+
+struct TargetResult {
+  std::string target;
+  double mrays;           // million rays a second, the median
+  double against_embree;  // its median of ratios within a repetition
+  double against_scalar;  // likewise
+  Differences differences;
+  std::uint32_t scalar_differences;  // rays that differ from the baseline in any bit
+};
+
+struct Comparison {
+  std::string scene;
+  std::uint32_t primitives;
+  RayKind kind;
+  std::uint32_t rays;
+  std::string embree_method;  // the call, flag and build quality that won
+  double embree_mrays, scalar_mrays;
+  std::vector<TargetResult> targets;
+};
+
+// Times all kinds of rays of options.kinds over `scene`, and hands over each comparison when it is
+// made. Embree is called in every way, then the two fastest ways take part in the repetitions.
+// Embree's time is that of the calls alone, over rays already in its layout; Sheaf's is one call of
+// TraceClosest (t, primitive, u and v) or TraceOccluded. The baseline traces all rays, too: on a
+// sample of them it is up to a tenth slower a ray.
+void CompareTracers(const BenchScene& scene, const CompareOptions& options,
+                    const std::function<void(const Comparison&)>& report);
+
+}  // namespace sheaf::bench
+
+#endif  // SHEAF_BENCH_COMPARE_TRACERS_H_

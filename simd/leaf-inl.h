@@ -1,0 +1,246 @@
+// The primitives of a leaf against a packet, or against one of its rays.
+//
+// A packet takes the primitives one by one, a ray takes all of the leaf at once: both are pairs of
+// a ray and a primitive in the lanes of a vector.
+#if defined(SHEAF_SIMD_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_LEAF_INL_H_
+#undef SHEAF_SIMD_LEAF_INL_H_
+#else
+#define SHEAF_SIMD_LEAF_INL_H_
+#endif
+
+#include <bit>
+
+#include "simd/packet-inl.h"
+#include "simd/sphere-inl.h"
+#include "simd/triangle-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+// As many lanes as a leaf has primitives, or a node children.
+template <typename Real>
+using LeafLanes = hn::CappedTag<Real, kMaxLeafSize>;
+
+template <typename Real>
+HWY_INLINE const Real* TriangleBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
+  return tree.triangles + std::size_t{9} * LeafFirst(leaf);
+}
+template <typename Real>
+HWY_INLINE const Real* SphereBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
+  return tree.spheres + std::size_t{4} * LeafFirst(leaf);
+}
+
+// ---- A packet ----
+
+// Takes the lanes of `hit` whose t is nearer than what they had, or as near with a lower id. Every
+// t is at most t_best.
+template <Query kQuery, class D, class M, class V, class VI, typename Real = hn::TFromD<D>>
+HWY_INLINE void KeepHits(D d, Packet<Real>& packet, M hit, V t, V u, V v, VI id) {
+  const IdLanes<D> di;
+  const auto t_best = hn::Load(d, packet.t_best);
+  const auto id_best = LoadIds(d, packet.id);
+  const auto lower = hn::RebindMask(d, hn::Lt(id, id_best));
+  const auto closer = hn::And(hit, hn::Or(hn::Lt(t, t_best), lower));
+  const auto t_new = kQuery == Query::kClosest ? t : hn::Set(d, kDone<Real>);
+  hn::Store(hn::IfThenElse(closer, t_new, t_best), d, packet.t_best);
+  StoreIds(d, hn::IfThenElse(hn::RebindMask(di, closer), id, id_best), packet.id);
+  if constexpr (kQuery == Query::kClosest) {
+    hn::Store(hn::IfThenElse(closer, u, hn::Load(d, packet.u)), d, packet.u);
+    hn::Store(hn::IfThenElse(closer, v, hn::Load(d, packet.v)), d, packet.v);
+  }
+}
+
+// One triangle, vertices relative to the rays' origins in the order kx, ky, kz of `axis`, against
+// the rays of `lanes`, all of that axis.
+template <Query kQuery, class D, class M, class V, typename Real = hn::TFromD<D>>
+HWY_INLINE void TriangleAgainstPacket(D d, Packet<Real>& packet, int axis, V ax, V ay, V az, V bx,
+                                      V by, V bz, V cx, V cy, V cz, std::uint32_t id, M lanes) {
+  const int kx = (axis + 1) % 3, ky = (axis + 2) % 3;
+  V t, v, w, det;
+  const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::Load(d, packet.shear_x),
+                               hn::Load(d, packet.shear_y), hn::Load(d, packet.direction[kx]),
+                               hn::Load(d, packet.direction[ky]),
+                               hn::Load(d, packet.direction[axis]), lanes, t, v, w, det);
+  if (hn::AllFalse(d, inside)) return;
+  const IdLanes<D> di;
+  using Id = hn::TFromD<IdLanes<D>>;
+  const auto ids = hn::Set(di, Id{id});
+  const auto source = hn::And(LoadIds(d, packet.source), hn::Set(di, Id{~kInsideBit}));
+  const auto elsewhere = hn::RebindMask(d, hn::Ne(source, ids));
+  const M within =
+      hn::And(hn::Le(hn::Load(d, packet.t_min), t), hn::Le(t, hn::Load(d, packet.t_best)));
+  const M hit = hn::And(hn::And(inside, elsewhere), within);
+  if (hn::AllFalse(d, hit)) return;
+  KeepHits<kQuery>(d, packet, hit, t, hn::Div(v, det), hn::Div(w, det), ids);
+}
+
+// Sphere `i` of a block of `n` against the rays of `lanes`.
+template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
+HWY_INLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* block, std::uint32_t n,
+                                    std::uint32_t i, std::uint32_t id, M lanes) {
+  using V = hn::Vec<D>;
+  const IdLanes<D> di;
+  using Id = hn::TFromD<IdLanes<D>>;
+  const auto t_min = hn::Load(d, packet.t_min), t_best = hn::Load(d, packet.t_best);
+  const auto source = LoadIds(d, packet.source);
+  const auto ids = hn::Set(di, Id{id});
+  const auto relative = [&](int axis) SHEAF_LAMBDA {
+    return hn::Sub(hn::Load(d, packet.origin[axis]), hn::Set(d, block[axis * n + i]));
+  };
+  M met = MayHitSphere(d, relative(0), relative(1), relative(2), hn::Load(d, packet.direction[0]),
+                       hn::Load(d, packet.direction[1]), hn::Load(d, packet.direction[2]),
+                       hn::Load(d, packet.screen), hn::Set(d, block[3 * n + i]), t_min, t_best);
+  met = hn::AndNot(hn::RebindMask(d, hn::Eq(source, ids)), hn::And(lanes, met));
+  if (hn::AllFalse(d, met)) return;
+  const SpherePairs<Real> pairs = {
+      {{packet.origin[0], 1}, {packet.origin[1], 1}, {packet.origin[2], 1}},
+      {{packet.direction[0], 1}, {packet.direction[1], 1}, {packet.direction[2], 1}},
+      {{block + i, 0}, {block + n + i, 0}, {block + 2 * n + i, 0}},
+      {block + 3 * n + i, 0}};
+  V t, u;
+  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, u);
+  if (hn::AllFalse(d, hit)) return;
+  KeepHits<kQuery>(d, packet, hit, t, u, hn::Zero(d), ids);
+}
+
+// Primitives of the leaf whose bits are set in `wanted`.
+template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
+HWY_INLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                  std::uint32_t wanted, Packet<Real>& packet, M lanes) {
+  const std::uint32_t n = LeafCount(leaf), first = LeafFirst(leaf);
+  if (!IsTriangleLeaf(leaf)) {
+    const Real* block = SphereBlock(tree, leaf);
+    for (; wanted != 0; wanted &= wanted - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
+      SphereAgainstPacket<kQuery>(d, packet, block, n, i, tree.sphere_id[first + i], lanes);
+    }
+    return;
+  }
+  // A packet's rays mostly share their dominant axis; where they do not, each axis takes its lanes.
+  const Real* block = TriangleBlock(tree, leaf);
+  const IdLanes<D> di;
+  const auto axes = LoadIds(d, packet.axis);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto same = hn::Eq(axes, hn::Set(di, static_cast<hn::TFromD<IdLanes<D>>>(axis)));
+    const M along = hn::And(lanes, hn::RebindMask(d, same));
+    if (hn::AllFalse(d, along)) continue;
+    const int kx = (axis + 1) % 3, ky = (axis + 2) % 3;
+    const auto ox = hn::Load(d, packet.origin[kx]), oy = hn::Load(d, packet.origin[ky]),
+               oz = hn::Load(d, packet.origin[axis]);
+    for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+      const auto x = [&](int vertex) SHEAF_LAMBDA {
+        return hn::Sub(hn::Set(d, block[(3 * vertex + kx) * n + i]), ox);
+      };
+      const auto y = [&](int vertex) SHEAF_LAMBDA {
+        return hn::Sub(hn::Set(d, block[(3 * vertex + ky) * n + i]), oy);
+      };
+      const auto z = [&](int vertex) SHEAF_LAMBDA {
+        return hn::Sub(hn::Set(d, block[(3 * vertex + axis) * n + i]), oz);
+      };
+      TriangleAgainstPacket<kQuery>(d, packet, axis, x(0), y(0), z(0), x(1), y(1), z(1), x(2), y(2),
+                                    z(2), tree.triangle_id[first + i], along);
+    }
+  }
+}
+
+// ---- One ray ----
+
+template <Query kQuery, typename Real>
+HWY_INLINE void KeepHit(Packet<Real>& packet, std::uint32_t lane, Real t, Real u, Real v,
+                        std::uint32_t id) {
+  const Real t_best = packet.t_best[lane];
+  if (!(t < t_best || (t == t_best && id < packet.id[lane]))) return;
+  packet.t_best[lane] = kQuery == Query::kClosest ? t : kDone<Real>;
+  packet.id[lane] = id;
+  packet.u[lane] = u;
+  packet.v[lane] = v;
+}
+
+template <Query kQuery, typename Real>
+HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, Packet<Real>& packet,
+                               std::uint32_t lane) {
+  const LeafLanes<Real> d;
+  using V = hn::Vec<LeafLanes<Real>>;
+  const IdLanes<LeafLanes<Real>> di;
+  using Id = hn::TFromD<decltype(di)>;
+  const std::uint32_t n = LeafCount(leaf), first = LeafFirst(leaf);
+  alignas(kAlignment) Real ts[kMaxLeafSize], us[kMaxLeafSize], vs[kMaxLeafSize];
+  alignas(kAlignment) Real dets[kMaxLeafSize];
+  const auto t_min = hn::Set(d, packet.t_min[lane]);
+  const std::uint32_t source = packet.source[lane];
+  if (IsTriangleLeaf(leaf)) {
+    const std::size_t kz = packet.axis[lane], kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
+    const Real* block = TriangleBlock(tree, leaf);
+    const Real *xs = block + kx * n, *ys = block + ky * n, *zs = block + kz * n;
+    const std::size_t next = std::size_t{3} * n;  // from a vertex to the next
+    const auto ox = hn::Set(d, packet.origin[kx][lane]), oy = hn::Set(d, packet.origin[ky][lane]),
+               oz = hn::Set(d, packet.origin[kz][lane]);
+    for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
+      const auto relative = [&](const Real* at, V o)
+                                SHEAF_LAMBDA { return hn::Sub(hn::LoadU(d, at + i), o); };
+      V t, v, w, det;
+      const auto inside = HitTriangle(
+          d, relative(xs, ox), relative(ys, oy), relative(zs, oz), relative(xs + next, ox),
+          relative(ys + next, oy), relative(zs + next, oz), relative(xs + 2 * next, ox),
+          relative(ys + 2 * next, oy), relative(zs + 2 * next, oz),
+          hn::Set(d, packet.shear_x[lane]), hn::Set(d, packet.shear_y[lane]),
+          hn::Set(d, packet.direction[kx][lane]), hn::Set(d, packet.direction[ky][lane]),
+          hn::Set(d, packet.direction[kz][lane]), LanesBelow(d, i, n), t, v, w, det);
+      if (hn::AllFalse(d, inside)) continue;
+      const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::Set(d, packet.t_best[lane])));
+      std::uint32_t hits = MaskBits(d, hn::And(inside, within));
+      if (hits == 0) continue;
+      hn::Store(t, d, ts);
+      hn::Store(v, d, us);
+      hn::Store(w, d, vs);
+      hn::Store(det, d, dets);
+      for (; hits != 0; hits &= hits - 1) {
+        const int k = std::countr_zero(hits);
+        const std::uint32_t id = tree.triangle_id[first + i + static_cast<std::uint32_t>(k)];
+        if ((source & ~kInsideBit) == id) continue;
+        KeepHit<kQuery>(packet, lane, ts[k], us[k] / dets[k], vs[k] / dets[k], id);
+      }
+    }
+    return;
+  }
+  const Real* block = SphereBlock(tree, leaf);
+  const auto sources = hn::Set(di, Id{source});
+  for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
+    const auto ids = LoadIds(d, tree.sphere_id + first + i);
+    const auto t_best = hn::Set(d, packet.t_best[lane]);
+    const auto relative = [&](int axis) SHEAF_LAMBDA {
+      return hn::Sub(hn::Set(d, packet.origin[axis][lane]), hn::LoadU(d, block + axis * n + i));
+    };
+    auto met = MayHitSphere(
+        d, relative(0), relative(1), relative(2), hn::Set(d, packet.direction[0][lane]),
+        hn::Set(d, packet.direction[1][lane]), hn::Set(d, packet.direction[2][lane]),
+        hn::Set(d, packet.screen[lane]), hn::LoadU(d, block + 3 * n + i), t_min, t_best);
+    met = hn::And(met, LanesBelow(d, i, n));
+    met = hn::AndNot(hn::RebindMask(d, hn::Eq(sources, ids)), met);
+    if (hn::AllFalse(d, met)) continue;
+    const SpherePairs<Real> pairs = {
+        {{packet.origin[0] + lane, 0}, {packet.origin[1] + lane, 0}, {packet.origin[2] + lane, 0}},
+        {{packet.direction[0] + lane, 0},
+         {packet.direction[1] + lane, 0},
+         {packet.direction[2] + lane, 0}},
+        {{block + i, 1}, {block + n + i, 1}, {block + 2 * n + i, 1}},
+        {block + 3 * n + i, 1}};
+    V t, u;
+    std::uint32_t hits = MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, u));
+    if (hits == 0) continue;
+    hn::Store(t, d, ts);
+    hn::Store(u, d, us);
+    for (; hits != 0; hits &= hits - 1) {
+      const int k = std::countr_zero(hits);
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], Real(0),
+                      tree.sphere_id[first + i + static_cast<std::uint32_t>(k)]);
+    }
+  }
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_LEAF_INL_H_

@@ -1,0 +1,179 @@
+// A packet: as many rays as the target has lanes, with what they have hit so far.
+#if defined(SHEAF_SIMD_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_PACKET_INL_H_
+#undef SHEAF_SIMD_PACKET_INL_H_
+#else
+#define SHEAF_SIMD_PACKET_INL_H_
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simd/ray-inl.h"
+#include "simd/sphere-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+// No target has more lanes than this.
+template <typename Real>
+inline constexpr std::uint32_t kPacketSize = std::min<std::uint32_t>(kMaxLanes,
+                                                                     HWY_MAX_BYTES / sizeof(Real));
+
+// The t_best of a lane of which nothing more is wanted: no box and no hit comes before it.
+template <typename Real>
+inline constexpr Real kDone = -std::numeric_limits<Real>::infinity();
+
+// Rays in memory, because a ray that goes on alone is read lane by lane. Lanes that cannot hit
+// anything, or are past the batch's end, are kDone from the start.
+template <typename Real>
+struct alignas(kAlignment) Packet {
+  static constexpr std::uint32_t kSize = kPacketSize<Real>;
+
+  // Numbers first, so that whole vectors of them are aligned.
+  Real origin[3][kSize], direction[3][kSize];
+  Real t_min[kSize];
+  Real t_best[kSize];  // the ray's end: t_max, then the nearest hit, or kDone
+  Real u[kSize], v[kSize];
+  // The shear of the triangle test, and ScreenScale where there are spheres: PrepareLeafTerms.
+  Real shear_x[kSize], shear_y[kSize];
+  Real screen[kSize];
+  // src/scalar/ray_box.h, RayBox; filled by PrepareBoxes.
+  Real scale[3][kSize], enter[3][kSize], leave[3][kSize];
+  Real slack[3][kSize];  // what the origin moves, along the direction, for `enter`
+
+  std::uint32_t id[kSize];  // of the nearest hit, or of any where kOccluded is asked
+  std::uint32_t source[kSize];
+  std::uint32_t axis[kSize];  // the dominant one, which the shear is along
+  std::uint32_t octant[kSize];
+  std::uint32_t steep_lanes;    // as bits: lanes with a component below kMinBoxSlope
+  std::uint32_t without_boxes;  // open lanes that box tests do not hold for
+  bool has_boxes;
+};
+
+// The dominant axis of each direction; x wins ties, then y (ShearOf in src/scalar).
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Vec<IdLanes<D>> DominantAxis(D /*d*/, V dx, V dy, V dz) {
+  const IdLanes<D> di;
+  const V ax = hn::Abs(dx), ay = hn::Abs(dy), az = hn::Abs(dz);
+  const auto x = hn::RebindMask(di, hn::And(hn::Ge(ax, ay), hn::Ge(ax, az)));
+  const auto y = hn::RebindMask(di, hn::Ge(ay, az));
+  using Id = hn::TFromD<IdLanes<D>>;
+  const auto y_or_z = hn::IfThenElse(y, hn::Set(di, Id{1}), hn::Set(di, Id{2}));
+  return hn::IfThenElse(x, hn::Zero(di), y_or_z);
+}
+
+// Rays [i, i + lanes) of a batch of `count`.
+template <typename Real>
+HWY_INLINE void LoadPacket(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
+                           std::uint32_t i, std::uint32_t count, Packet<Real>& packet) {
+  const Lanes<Real> d;
+  const auto ox = hn::LoadU(d, rays.origin_x + i);
+  const auto oy = hn::LoadU(d, rays.origin_y + i);
+  const auto oz = hn::LoadU(d, rays.origin_z + i);
+  const auto dx = hn::LoadU(d, rays.direction_x + i);
+  const auto dy = hn::LoadU(d, rays.direction_y + i);
+  const auto dz = hn::LoadU(d, rays.direction_z + i);
+  const auto t_min = LoadTMin(d, intervals, i), t_max = LoadTMax(d, intervals, i);
+  const auto lanes =
+      hn::And(LanesBelow(d, i, count), IsTraceable(d, ox, oy, oz, dx, dy, dz, t_min, t_max));
+  hn::Store(ox, d, packet.origin[0]);
+  hn::Store(oy, d, packet.origin[1]);
+  hn::Store(oz, d, packet.origin[2]);
+  hn::Store(dx, d, packet.direction[0]);
+  hn::Store(dy, d, packet.direction[1]);
+  hn::Store(dz, d, packet.direction[2]);
+  hn::Store(t_min, d, packet.t_min);
+  hn::Store(hn::IfThenElse(lanes, t_max, hn::Set(d, kDone<Real>)), d, packet.t_best);
+  hn::Store(hn::Zero(d), d, packet.u);
+  hn::Store(hn::Zero(d), d, packet.v);
+  StoreIds(d, hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive), packet.id);
+  StoreIds(d, LoadSources(d, rays, i), packet.source);
+  packet.has_boxes = false;
+}
+
+// Lanes of which something is still wanted, as bits.
+template <typename Real>
+HWY_INLINE std::uint32_t OpenLanes(const Packet<Real>& packet) {
+  const Lanes<Real> d;
+  return MaskBits(d, hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>)));
+}
+
+// What leaf tests read of the rays, and only of the kinds that the tree has.
+template <typename Real>
+HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packet) {
+  const Lanes<Real> d;
+  const auto dx = hn::Load(d, packet.direction[0]);
+  const auto dy = hn::Load(d, packet.direction[1]);
+  const auto dz = hn::Load(d, packet.direction[2]);
+  const auto axis = DominantAxis(d, dx, dy, dz);
+  StoreIds(d, axis, packet.axis);
+  const auto is = [&](std::uint32_t k) SHEAF_LAMBDA {
+    return hn::RebindMask(d, hn::Eq(axis, hn::Set(IdLanes<Lanes<Real>>(), k)));
+  };
+  const auto by_axis = [&](auto x, auto y, auto z) SHEAF_LAMBDA {
+    return hn::IfThenElse(is(0), x, hn::IfThenElse(is(1), y, z));
+  };
+  const auto along = by_axis(dx, dy, dz);
+  hn::Store(hn::Div(by_axis(dy, dz, dx), along), d, packet.shear_x);
+  hn::Store(hn::Div(by_axis(dz, dx, dy), along), d, packet.shear_y);
+  if (tree.sphere_count > 0) hn::Store(ScreenScale(d, dx, dy, dz), d, packet.screen);
+}
+
+// FitsBoxes and BoxOf of src/scalar/ray_box.h.
+template <typename Real>
+HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
+  if (packet.has_boxes) return;
+  packet.has_boxes = true;
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  auto size = hn::Zero(d), furthest = hn::Zero(d), reach = hn::Zero(d);
+  Real tree_furthest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto o = hn::Load(d, packet.origin[axis]);
+    const auto lower = hn::Set(d, static_cast<Real>(tree.lower[axis]));
+    const auto upper = hn::Set(d, static_cast<Real>(tree.upper[axis]));
+    size = hn::Max(size, hn::Abs(hn::Load(d, packet.direction[axis])));
+    furthest = hn::Max(furthest, hn::Abs(o));
+    reach = hn::Max(reach, hn::Max(hn::Sub(upper, o), hn::Sub(o, lower)));
+    tree_furthest =
+        std::max({tree_furthest, Real(-tree.lower[axis]), static_cast<Real>(tree.upper[axis])});
+  }
+  // NaN passes none of these; such a lane is kDone anyway.
+  auto fits = hn::And(hn::Ge(size, hn::Set(d, Real(kMinBoxDirection))),
+                      hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
+  fits = hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate))));
+  fits = hn::And(fits, hn::Ge(hn::Load(d, packet.t_min), hn::Zero(d)));
+  if (tree_furthest > kMaxBoxCoordinate) fits = NoLanes(d);
+  packet.without_boxes = ~MaskBits(d, fits) & OpenLanes(packet);
+
+  const auto least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));
+  const auto steep_slack = hn::Mul(reach, hn::Set(d, Real(2 * kMinBoxSlope)));
+  auto octant = hn::Zero(di);
+  packet.steep_lanes = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto o = hn::Load(d, packet.origin[axis]);
+    const auto dir = hn::Load(d, packet.direction[axis]);
+    const auto steep = hn::Lt(hn::Abs(dir), least);
+    auto slack = hn::MulAdd(hn::Abs(o), hn::Set(d, Real(kBoxOriginSlack)),
+                            hn::Set(d, Real(kBoxAbsoluteSlack)));
+    slack = hn::Add(slack, hn::IfThenElseZero(steep, steep_slack));
+    slack = hn::CopySignToAbs(slack, dir);
+    const auto scale =
+        hn::Div(hn::Set(d, Real(1)), hn::IfThenElse(steep, hn::CopySignToAbs(least, dir), dir));
+    hn::Store(scale, d, packet.scale[axis]);
+    hn::Store(slack, d, packet.slack[axis]);
+    packet.steep_lanes |= MaskBits(d, steep);
+    hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), scale)), d, packet.enter[axis]);
+    hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), scale)), d, packet.leave[axis]);
+    const auto backward = hn::ShiftRight<sizeof(Real) * 8 - 1>(hn::BitCast(di, dir));
+    octant = hn::Or(octant, hn::ShiftLeftSame(backward, axis));
+  }
+  StoreIds(d, octant, packet.octant);
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_PACKET_INL_H_

@@ -1,0 +1,180 @@
+// A packet through the tree: while enough of its rays go the same way together, then one by one.
+#if defined(SHEAF_SIMD_TRACE_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_TRACE_PACKET_INL_H_
+#undef SHEAF_SIMD_TRACE_PACKET_INL_H_
+#else
+#define SHEAF_SIMD_TRACE_PACKET_INL_H_
+#endif
+
+#include "simd/trace_bundle-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+// Up to so many rays go on one by one.
+template <typename Real>
+inline constexpr std::uint32_t kFewRays = kPacketSize<Real> / 4;
+
+template <class D>
+HWY_INLINE hn::Mask<D> LanesFromBits(D d, std::uint32_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                 static_cast<std::uint8_t>(bits >> 8)};
+  return hn::LoadMaskBits(d, bytes);
+}
+
+// The bundle whose lanes are the rays of `lanes` (bits), all of one octant.
+template <typename Real>
+HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Bundle<Real>& bundle) {
+  const Lanes<Real> d;
+  const auto first = std::countr_zero(lanes);
+  const auto in_bundle = LanesFromBits(d, lanes);
+  const auto others_as_first = [&](const Real(&values)[kPacketSize<Real>]) SHEAF_LAMBDA {
+    return hn::IfThenElse(in_bundle, hn::Load(d, values), hn::Set(d, values[first]));
+  };
+  const auto lowest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MinOfLanes(d, v)); };
+  const auto highest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+  bundle.octant = packet.octant[first];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto scale = hn::Load(d, packet.scale[axis]);
+    hn::Store(scale, d, bundle.enter_scale[axis]);
+    hn::Store(scale, d, bundle.leave_scale[axis]);
+    hn::Store(hn::Load(d, packet.enter[axis]), d, bundle.enter[axis]);
+    hn::Store(hn::Load(d, packet.leave[axis]), d, bundle.leave[axis]);
+
+    const auto scales = others_as_first(packet.scale[axis]);
+    const auto origins = others_as_first(packet.origin[axis]);
+    const auto slack = others_as_first(packet.slack[axis]);
+    const auto ahead = hn::Add(origins, slack), behind = hn::Sub(origins, slack);
+    if (bundle.octant >> axis & 1) {
+      bundle.all_enter[axis] = lowest(ahead);
+      bundle.all_leave[axis] = highest(behind);
+      bundle.all_enter_scale[axis] = highest(scales);
+      bundle.all_leave_scale[axis] = lowest(scales);
+    } else {
+      bundle.all_enter[axis] = highest(ahead);
+      bundle.all_leave[axis] = lowest(behind);
+      bundle.all_enter_scale[axis] = lowest(scales);
+      bundle.all_leave_scale[axis] = highest(scales);
+    }
+  }
+  const auto t_min = others_as_first(packet.t_min);
+  hn::Store(t_min, d, bundle.t_min);
+  bundle.all_t_min = lowest(t_min);
+}
+
+template <typename Real>
+HWY_INLINE void UpdateRayEnds(const Packet<Real>& packet, std::uint32_t lanes,
+                              Bundle<Real>& bundle) {
+  const Lanes<Real> d;
+  // Finite, so that a box that is entered at infinity is never met.
+  const auto last = hn::Min(hn::Mul(hn::Load(d, packet.t_best), hn::Set(d, Real(kBoxFarFactor))),
+                            hn::Set(d, kDefaultTMax<Real>));
+  hn::Store(hn::IfThenElse(LanesFromBits(d, lanes), last, hn::Set(d, kDone<Real>)), d,
+            bundle.t_last);
+}
+
+// Primitives of a leaf whose boxes the bundle may meet, as bits.
+template <typename Real>
+HWY_INLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t leaf,
+                                  const Bundle<Real>& bundle) {
+  const Lanes<Real> d;
+  const LeafLanes<Real> d8;
+  const std::uint32_t n = LeafCount(leaf);
+  const auto t_last = hn::Set(d8, hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, bundle.t_last))));
+  const auto growth = hn::Set(d8, Real(kBoxGrowth));
+  std::uint32_t met = 0;
+  const bool are_triangles = IsTriangleLeaf(leaf);
+  for (std::uint32_t i = 0; i < n; i += LaneCount(d8)) {
+    const Real* block = (are_triangles ? TriangleBlock(tree, leaf) : SphereBlock(tree, leaf)) + i;
+    const auto field = [&](int k) SHEAF_LAMBDA { return hn::LoadU(d8, block + k * n); };
+    const auto low = [&](int axis) SHEAF_LAMBDA {
+      if (!are_triangles) return hn::Sub(field(axis), field(3));
+      return hn::Min(hn::Min(field(axis), field(3 + axis)), field(6 + axis));
+    };
+    const auto high = [&](int axis) SHEAF_LAMBDA {
+      if (!are_triangles) return hn::Add(field(axis), field(3));
+      return hn::Max(hn::Max(field(axis), field(3 + axis)), field(6 + axis));
+    };
+    const auto lower = [&](int axis) SHEAF_LAMBDA {
+      return hn::NegMulAdd(hn::Sub(high(axis), low(axis)), growth, low(axis));
+    };
+    const auto upper = [&](int axis) SHEAF_LAMBDA {
+      return hn::MulAdd(hn::Sub(high(axis), low(axis)), growth, high(axis));
+    };
+    const auto in = [&](int axis) SHEAF_LAMBDA {
+      return bundle.octant >> axis & 1 ? upper(axis) : lower(axis);
+    };
+    const auto out = [&](int axis) SHEAF_LAMBDA {
+      return bundle.octant >> axis & 1 ? lower(axis) : upper(axis);
+    };
+    met |=
+        MaskBits(d8, BundleMeets(d8, bundle, in(0), in(1), in(2), out(0), out(1), out(2), t_last))
+        << i;
+  }
+  return met & ((1u << n) - 1);
+}
+
+// Rays of `lanes` (bits), all of one octant, from the child `start` on.
+template <Query kQuery, typename Real>
+HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& packet,
+                                  std::uint32_t lanes, std::uint32_t start) {
+  const Lanes<Real> d;
+  Bundle<Real> bundle;
+  BundleRays(packet, lanes, bundle);
+  UpdateRayEnds(packet, lanes, bundle);
+  TraceBundle(tree, bundle, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+    const std::uint32_t bits = MaskBits(d, met);
+    if (static_cast<std::uint32_t>(std::popcount(bits)) <= kFewRays<Real>) {
+      TraceRays<kQuery>(tree, packet, bits, child);
+    } else if (IsLeaf(child)) {
+      LeafAgainstPacket<kQuery>(d, tree, child, CullLeaf(tree, child, bundle), packet, met);
+    } else {
+      return Visit::kDescend;
+    }
+    UpdateRayEnds(packet, lanes, bundle);
+    return Visit::kDone;
+  });
+}
+
+// Every leaf against the packet's rays of `lanes`: for few primitives, and for rays that box tests
+// do not hold for.
+template <Query kQuery, typename Real>
+HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packet,
+                                 std::uint32_t lanes) {
+  const Lanes<Real> d;
+  for (std::uint32_t i = 0; i < tree.node_count; ++i) {
+    for (const std::uint32_t child : tree.nodes[i].child) {
+      if (!IsLeaf(child) || child == kNoChild) continue;
+      lanes &= OpenLanes(packet);
+      if (lanes == 0) return;
+      LeafAgainstPacket<kQuery>(d, tree, child, (1u << LeafCount(child)) - 1, packet,
+                                LanesFromBits(d, lanes));
+    }
+  }
+}
+
+// The rays of `lanes` (bits) from the child `start` on, octant by octant. Rays of which half a
+// packet or more does not go the same way are as good as random: they go one by one from the start.
+template <Query kQuery, typename Real>
+HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lanes,
+                            std::uint32_t start) {
+  while (lanes != 0) {
+    const std::uint32_t octant = packet.octant[std::countr_zero(lanes)];
+    std::uint32_t alike = 0;
+    for (std::uint32_t lane = 0; lane < kPacketSize<Real>; ++lane) {
+      alike |= static_cast<std::uint32_t>(packet.octant[lane] == octant) << lane;
+    }
+    alike &= lanes;
+    lanes &= ~alike;
+    if (static_cast<std::uint32_t>(std::popcount(alike)) <= kPacketSize<Real> / 2) {
+      TraceRays<kQuery>(tree, packet, alike, start);
+    } else {
+      TracePacketFrom<kQuery>(tree, packet, alike, start);
+    }
+  }
+}
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_TRACE_PACKET_INL_H_

@@ -1,0 +1,61 @@
+// The boxes that a tree is built over: one a primitive, in float, grown by kBoxGrowth.
+#ifndef SHEAF_BVH_PRIMITIVE_BOX_H_
+#define SHEAF_BVH_PRIMITIVE_BOX_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "simd/layout.h"
+#include "src/bvh/float4.h"
+#include "src/core/error.h"
+
+namespace sheaf::bvh {
+
+// Box and primitive in 32 bytes. Bounds are finite and never -0, so that minima and maxima do not
+// depend on the order in which they are taken; FLT_MAX stands for whatever lies beyond it, which
+// no box test is asked about (kMaxBoxCoordinate).
+struct alignas(16) PrimitiveBox {
+  float lower[3];
+  std::uint32_t tag;  // see MakeTag
+  float upper[3];
+  std::uint32_t unused;
+};
+static_assert(sizeof(PrimitiveBox) == 32);
+
+// Kind and index into the kind's arrays; tags order as spheres after triangles, then by index. As
+// lane 3 of a vector a tag is a normal float: sums of denormals are slow on some processors.
+inline constexpr std::uint32_t kTagBase = 0x40000000u;
+inline constexpr std::uint32_t kSphereTag = kMaxTreePrimitives;
+constexpr std::uint32_t MakeTag(std::uint32_t kind, std::uint32_t index) {
+  return kTagBase | kind | index;
+}
+constexpr std::uint32_t IsTriangleTag(std::uint32_t tag) { return ~tag >> 26 & 1; }
+constexpr std::uint32_t TagIndex(std::uint32_t tag) { return tag & (kMaxTreePrimitives - 1); }
+
+inline Box4 BoxOf(const PrimitiveBox& box) { return {Load4(box.lower), Load4(box.upper)}; }
+
+enum class BoxState { kFinite, kNever, kInfinite };
+
+// The box of one primitive. kNever: it has a NaN, kInfinite: an infinite coordinate; then `box` is
+// left alone.
+template <typename Real>
+BoxState MakeTriangleBox(const TriangleArrays<Real>& triangles, std::uint32_t index,
+                         PrimitiveBox& box);
+template <typename Real>
+BoxState MakeSphereBox(const SphereArrays<Real>& spheres, std::uint32_t index, PrimitiveBox& box);
+
+struct PrimitiveBoxes {
+  std::unique_ptr<PrimitiveBox[]> boxes;
+  std::uint32_t triangles = 0, spheres = 0;  // that have a box, in the order of the input
+  Box4 bounds, centroids;                    // of the boxes and of the sums lower + upper
+};
+
+// The boxes of all primitives without NaN. Fails with kUsage where a coordinate is infinite. Runs
+// on the threads of the caller's arena.
+template <typename Real>
+Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<Real>& geometry);
+
+}  // namespace sheaf::bvh
+
+#endif  // SHEAF_BVH_PRIMITIVE_BOX_H_

@@ -1,0 +1,148 @@
+// From arrays of any length to the kernels, which take whole vectors: all but the last few rays in
+// place, the rest through a padded copy.
+#include <algorithm>
+
+#include "simd/trace_closest.h"
+#include "simd/trace_occluded.h"
+#include "src/bvh/geometry.h"
+
+namespace sheaf {
+namespace {
+
+constexpr std::uint32_t kChunk = 1024;  // rays at a time where a result is not wanted
+
+RayView<float> Skip(RayView<float> rays, std::uint32_t first) {
+  ForEachField(rays, [&](auto& field) {
+    if (field) field += first;
+  });
+  return rays;
+}
+
+RayIntervals<float> Skip(RayIntervals<float> intervals, std::uint32_t first) {
+  if (intervals.t_min) intervals.t_min += first;
+  if (intervals.t_max) intervals.t_max += first;
+  return intervals;
+}
+
+template <typename T>
+T* Skip(T* array, std::uint32_t first) {
+  return array ? array + first : nullptr;
+}
+
+// The rays of one vector, of which `count` are copied; the lanes beyond have no direction.
+class PaddedRays {
+ public:
+  PaddedRays(const RayView<float>& rays, const RayIntervals<float>& intervals, std::uint32_t count)
+      : view_{}, intervals_(intervals) {
+    std::uint32_t slot = 0;
+    ForEachField(view_, rays, [&](auto& to, const auto& from) {
+      if (!from) return;
+      auto* const lanes = Lanes(from, slot++);
+      std::copy(from, from + count, lanes);
+      to = lanes;
+    });
+    CopyInterval(count, t_min_, intervals_.t_min);
+    CopyInterval(count, t_max_, intervals_.t_max);
+  }
+
+  const RayView<float>& view() const { return view_; }
+  const RayIntervals<float>& intervals() const { return intervals_; }
+
+ private:
+  float* Lanes(const float*, std::uint32_t slot) { return numbers_[slot]; }
+  std::uint32_t* Lanes(const std::uint32_t*, std::uint32_t) { return source_; }
+
+  static void CopyInterval(std::uint32_t count, float* lanes, const float*& array) {
+    if (!array) return;
+    std::copy(array, array + count, lanes);
+    array = lanes;
+  }
+
+  float numbers_[6][kMaxLanes] = {};
+  std::uint32_t source_[kMaxLanes] = {};
+  float t_min_[kMaxLanes] = {}, t_max_[kMaxLanes] = {};
+  RayView<float> view_;
+  RayIntervals<float> intervals_;
+};
+
+struct HitScratch {
+  float t[kChunk], u[kChunk], v[kChunk];
+  std::uint32_t primitive[kChunk];
+};
+
+// Writes the objects of `count` primitives; neighbours tend to share one.
+void FindObjects(const Geometry& geometry, const std::uint32_t* primitive, std::uint32_t count,
+                 std::uint32_t* object) {
+  std::uint32_t begin = 0, end = 0, current = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t id = primitive[i];
+    if (id != kNoPrimitive && !(id >= begin && id < end)) {
+      current = geometry.object_of(id);
+      begin = geometry.first_primitive(current);
+      end = geometry.first_primitive(current + 1);
+    }
+    object[i] = id == kNoPrimitive ? kNoPrimitive : current;
+  }
+}
+
+// At most kChunk rays, and whole vectors of them.
+void TraceChunk(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
+                const HitArrays& hits, const TraceOptions& options, HitScratch& scratch) {
+  const HitOutput<float> output = {hits.t ? hits.t : scratch.t, hits.u ? hits.u : scratch.u,
+                                   hits.v ? hits.v : scratch.v,
+                                   hits.primitive ? hits.primitive : scratch.primitive};
+  simd::TraceClosest(geometry.tree(), rays, options.intervals, count, options.coherence, output);
+  if (hits.object) FindObjects(geometry, output.primitive, count, hits.object);
+}
+
+}  // namespace
+
+void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
+                  const HitArrays& hits, const TraceOptions& options) {
+  HitScratch scratch;
+  const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
+  const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
+  const std::uint32_t step = has_all ? whole : kChunk;
+  const auto hits_from = [&](std::uint32_t first) {
+    return HitArrays{Skip(hits.t, first), Skip(hits.primitive, first), Skip(hits.object, first),
+                     Skip(hits.u, first), Skip(hits.v, first)};
+  };
+  for (std::uint32_t first = 0; first < whole;) {
+    const std::uint32_t n = std::min(step, whole - first);
+    TraceChunk(geometry, Skip(rays, first), n, hits_from(first),
+               {Skip(options.intervals, first), options.coherence}, scratch);
+    first += n;
+  }
+  const std::uint32_t rest = count - whole;
+  if (rest == 0) return;
+  const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
+  std::uint32_t object[kMaxLanes];
+  TraceChunk(geometry, padded.view(), rest, {.object = hits.object ? object : nullptr},
+             {padded.intervals(), options.coherence}, scratch);
+  const auto copy = [&](const auto* from, auto* to) {
+    if (to) std::copy(from, from + rest, to + whole);
+  };
+  copy(scratch.t, hits.t);
+  copy(scratch.u, hits.u);
+  copy(scratch.v, hits.v);
+  copy(scratch.primitive, hits.primitive);
+  copy(object, hits.object);
+}
+
+void TraceOccluded(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
+                   std::uint32_t* occluded, const TraceOptions& options) {
+  const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
+  if (whole > 0) {
+    simd::TraceOccluded(geometry.tree(), rays, options.intervals, whole, options.coherence,
+                        occluded);
+  }
+  const std::uint32_t rest = count - whole;
+  if (rest == 0) return;
+  const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
+  std::uint32_t lanes[kMaxLanes];
+  simd::TraceOccluded(geometry.tree(), padded.view(), padded.intervals(), rest, options.coherence,
+                      lanes);
+  std::copy(lanes, lanes + rest, occluded + whole);
+}
+
+}  // namespace sheaf
