@@ -77,8 +77,8 @@ HWY_INLINE void TriangleAgainstPacket(D d, Packet<Real>& packet, int axis, V ax,
 
 // Sphere `i` of a block of `n` against the rays of `lanes`.
 template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
-HWY_INLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* block, std::uint32_t n,
-                                    std::uint32_t i, std::uint32_t id, M lanes) {
+HWY_NOINLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* block, std::uint32_t n,
+                                      std::uint32_t i, std::uint32_t id, M lanes) {
   using V = hn::Vec<D>;
   const IdLanes<D> di;
   using Id = hn::TFromD<IdLanes<D>>;
@@ -106,8 +106,8 @@ HWY_INLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* block
 
 // Primitives of the leaf whose bits are set in `wanted`.
 template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
-HWY_INLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
-                                  std::uint32_t wanted, Packet<Real>& packet, M lanes) {
+HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                    std::uint32_t wanted, Packet<Real>& packet, M lanes) {
   const std::uint32_t n = LeafCount(leaf), first = LeafFirst(leaf);
   if (!IsTriangleLeaf(leaf)) {
     const Real* block = SphereBlock(tree, leaf);

@@ -6,7 +6,7 @@
 #define SHEAF_SIMD_TRACE_INL_H_
 #endif
 
-#include "simd/trace_tile-inl.h"
+#include "simd/trace_sheet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
@@ -32,8 +32,10 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         TraceEveryLeaf<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]));
       }
-    } else if (lanes > 1 && coherence != Coherence::kIncoherent && PrepareTile(tree, tile)) {
+    } else if (coherence != Coherence::kIncoherent && PrepareTile(tree, tile)) {
       TraceTile<kQuery>(tree, tile);
+    } else if (coherence != Coherence::kIncoherent && PrepareSheet(tree, tile)) {
+      TraceSheet<kQuery>(tree, tile);
     } else {
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         Packet<Real>& packet = tile.packets[k];

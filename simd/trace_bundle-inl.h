@@ -121,6 +121,7 @@ HWY_INLINE void TraceBundle(const TreeView<Real>& tree, Bundle<Real>& bundle, st
       if (hn::AllFalse(d, meets)) continue;
       hn::Store(hn::IfThenElse(meets, enter, hn::Inf(d)), d, stack[size].enter);
       stack[size].child = node.child[i];
+      FetchAhead(tree, node.child[i]);
       ++size;
     }
   }

@@ -75,8 +75,8 @@ HWY_INLINE void UpdateRayEnds(const Packet<Real>& packet, std::uint32_t lanes,
 
 // Primitives of a leaf whose boxes the bundle may meet, as bits.
 template <typename Real>
-HWY_INLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t leaf,
-                                  const Bundle<Real>& bundle) {
+HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t leaf,
+                                    const Bundle<Real>& bundle) {
   const Lanes<Real> d;
   const LeafLanes<Real> d8;
   const std::uint32_t n = LeafCount(leaf);

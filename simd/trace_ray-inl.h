@@ -7,6 +7,7 @@
 #define SHEAF_SIMD_TRACE_RAY_INL_H_
 #endif
 
+#include "hwy/cache_control.h"
 #include "simd/leaf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,6 +20,20 @@ HWY_INLINE hn::Vec<D> LoadPlanes(D d, const float* planes) {
     return hn::Load(d, planes);
   } else {
     return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), planes));
+  }
+}
+
+// Starts to fetch what a child is: the whole of a node, or most of a leaf.
+template <typename Real>
+HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
+  constexpr std::size_t kLine = 64;
+  const char* from = reinterpret_cast<const char*>(&tree.nodes[child]);
+  if (IsLeaf(child)) {
+    from = reinterpret_cast<const char*>(IsTriangleLeaf(child) ? TriangleBlock(tree, child)
+                                                               : SphereBlock(tree, child));
+  }
+  for (std::size_t line = 0; line < sizeof(TreeNode) / kLine; ++line) {
+    hwy::Prefetch(from + line * kLine);
   }
 }
 
@@ -91,6 +106,7 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
         }
         stack_enter[at] = enter;
         stack_child[at] = other;
+        FetchAhead(tree, other);
       }
     }
     if (IsLeaf(child)) {

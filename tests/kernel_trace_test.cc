@@ -213,6 +213,33 @@ TEST_CASE_TEMPLATE("rays of one origin trace as the scalar specification", Real,
   CHECK(hits > 2000);
 }
 
+TEST_CASE_TEMPLATE("rays of one direction trace as the scalar specification", Real, float, double) {
+  Random random(8);
+  std::uint32_t hits = 0;
+  for (int round = 0; round < 10; ++round) {
+    // The last along an axis, with either sign of zero.
+    const Vec3d towards =
+        round < 7 ? UniformPoint(random, -1, 1) : Vec3d(0, round == 8 ? -2 : 2, 0);
+    std::vector<scalar::Ray<Real>> rays =
+        GridRays<Real>(random, Vec3d(0), Vec3d(0, 0, 1), round % 2 ? 0.5 : 6);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      scalar::Ray<Real>& ray = rays[i];
+      const Vec3d at = UniformPoint(random, -0.01, 0.01) - 5.0 * towards;
+      const scalar::Vec3<double> start{at.x, at.y, at.z};
+      if (!scalar::IsFinite(ray.direction)) ray.direction = {};
+      ray.origin = ray.direction + start.To<Real>();
+      ray.direction = scalar::Vec3<double>{towards.x, towards.y, towards.z}.To<Real>();
+      if (round == 9 && i % 3 == 0) ray.direction.x = -ray.direction.x;
+      if (i % 32 == 0) ray.t_max = static_cast<Real>(Uniform(random, 0, 6));
+      if (i % 50 == 0) ray.direction.z = std::numeric_limits<Real>::infinity();
+    }
+    const Expected<Real> want(CrowdedScene(random, 1500), rays);
+    hits += want.hit_count();
+    CheckEverywhere(want);
+  }
+  CHECK(hits > 2000);
+}
+
 // Rays in the planes of triangles, through their vertices, along axes and box faces: where t is
 // mostly rounding error and boxes are touched at their rims.
 TEST_CASE_TEMPLATE("degenerate rays trace as the scalar specification", Real, float, double) {
