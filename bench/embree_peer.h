@@ -13,6 +13,7 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
+#include "simd/layout.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf::bench {
@@ -64,8 +65,6 @@ inline constexpr EmbreeCall kEmbreeCalls[] = {EmbreeCall::k1, EmbreeCall::k8, Em
 const char* NameOf(EmbreeCall call);
 // Rays a record of the layout that a call reads.
 std::uint32_t WidthOf(EmbreeCall call);
-
-enum class Query { kClosest, kOccluded };
 
 // Rays in the layout of the calls of one width.
 class EmbreeRays {

@@ -228,8 +228,8 @@ struct alignas(kAlignment) TreeNode {
 static_assert(sizeof(TreeNode) == 256);
 
 // Boxes of primitives are grown by this part of their extent on each side before they enter the
-// tree, and box tests by as much relatively (simd/box-inl.h): the box of a primitive then contains
-// every hit of it as computed, not only as real.
+// tree, and box tests by as much relatively (docs/numerics.md): the box of a primitive then
+// contains every hit of it as computed, not only as real.
 inline constexpr float kBoxGrowth = 0x1p-20f;
 
 // Box tests hold for rays and trees within these limits; other rays are tested against every
@@ -260,6 +260,16 @@ struct TreeView {
   const std::uint32_t* sphere_id;
   float lower[3], upper[3];  // of all boxes; lower > upper without primitives
 };
+
+// Whether box tests hold for the tree.
+template <typename Real>
+constexpr bool IsWithinBoxLimits(const TreeView<Real>& tree) {
+  bool is_within = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    is_within &= -tree.lower[axis] <= kMaxBoxCoordinate && tree.upper[axis] <= kMaxBoxCoordinate;
+  }
+  return is_within;
+}
 
 // What is asked of a ray: its nearest hit, or whether there is any.
 enum class Query { kClosest, kOccluded };

@@ -135,6 +135,13 @@ HWY_INLINE std::uint32_t MaskBits(D d, hn::Mask<D> mask) {
   return bits[0] | static_cast<std::uint32_t>(bits[1]) << 8;
 }
 
+template <class D>
+HWY_INLINE hn::Mask<D> LanesFromBits(D d, std::uint32_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                 static_cast<std::uint8_t>(bits >> 8)};
+  return hn::LoadMaskBits(d, bytes);
+}
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Dot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));

@@ -16,10 +16,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-// No target has more lanes than this.
+// The most lanes that the target can have; where vectors have no fixed size, more than it has.
 template <typename Real>
-inline constexpr std::uint32_t kPacketSize = std::min<std::uint32_t>(kMaxLanes,
-                                                                     HWY_MAX_BYTES / sizeof(Real));
+inline constexpr std::uint32_t kPacketSize =
+    HWY_TARGET == HWY_SCALAR ? 1 : std::min<std::uint32_t>(kMaxLanes, HWY_MAX_BYTES / sizeof(Real));
 
 // The t_best of a lane of which nothing more is wanted: no box and no hit comes before it.
 template <typename Real>
@@ -47,7 +47,6 @@ struct alignas(kAlignment) Packet {
   std::uint32_t source[kSize];
   std::uint32_t axis[kSize];  // the dominant one, which the shear is along
   std::uint32_t octant[kSize];
-  std::uint32_t steep_lanes;    // as bits: lanes with a component below kMinBoxSlope
   std::uint32_t without_boxes;  // open lanes that box tests do not hold for
   bool has_boxes;
 };
@@ -62,6 +61,15 @@ HWY_INLINE hn::Vec<IdLanes<D>> DominantAxis(D /*d*/, V dx, V dy, V dz) {
   using Id = hn::TFromD<IdLanes<D>>;
   const auto y_or_z = hn::IfThenElse(y, hn::Set(di, Id{1}), hn::Set(di, Id{2}));
   return hn::IfThenElse(x, hn::Zero(di), y_or_z);
+}
+
+template <typename Real>
+HWY_INLINE void ForgetHits(Packet<Real>& packet) {
+  const Lanes<Real> d;
+  hn::Store(hn::Zero(d), d, packet.u);
+  hn::Store(hn::Zero(d), d, packet.v);
+  StoreIds(d, hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive), packet.id);
+  packet.has_boxes = false;
 }
 
 // Rays [i, i + lanes) of a batch of `count`.
@@ -86,18 +94,43 @@ HWY_INLINE void LoadPacket(const RayView<Real>& rays, const RayIntervals<Real>& 
   hn::Store(dz, d, packet.direction[2]);
   hn::Store(t_min, d, packet.t_min);
   hn::Store(hn::IfThenElse(lanes, t_max, hn::Set(d, kDone<Real>)), d, packet.t_best);
-  hn::Store(hn::Zero(d), d, packet.u);
-  hn::Store(hn::Zero(d), d, packet.v);
-  StoreIds(d, hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive), packet.id);
   StoreIds(d, LoadSources(d, rays, i), packet.source);
-  packet.has_boxes = false;
+  ForgetHits(packet);
 }
 
-// Lanes of which something is still wanted, as bits.
+// Rays at `positions[0, n)` of a batch, all of them traceable; the other lanes are kDone.
+template <typename Real>
+HWY_INLINE void GatherPacket(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
+                             const std::uint32_t* positions, std::uint32_t n,
+                             Packet<Real>& packet) {
+  const Lanes<Real> d;
+  for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
+    const std::uint32_t i = positions[lane < n ? lane : 0];
+    packet.origin[0][lane] = rays.origin_x[i];
+    packet.origin[1][lane] = rays.origin_y[i];
+    packet.origin[2][lane] = rays.origin_z[i];
+    packet.direction[0][lane] = rays.direction_x[i];
+    packet.direction[1][lane] = rays.direction_y[i];
+    packet.direction[2][lane] = rays.direction_z[i];
+    packet.t_min[lane] = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
+    const Real t_max = intervals.t_max ? intervals.t_max[i] : intervals.all_t_max;
+    packet.t_best[lane] = lane < n ? std::min(t_max, kDefaultTMax<Real>) : kDone<Real>;
+    packet.source[lane] = rays.source ? rays.source[i] : kNoPrimitive;
+  }
+  ForgetHits(packet);
+}
+
+// Lanes of which something is still wanted.
+template <class D, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Mask<D> OpenMask(D d, const Packet<Real>& packet) {
+  return hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>));
+}
+
+// The same, as bits.
 template <typename Real>
 HWY_INLINE std::uint32_t OpenLanes(const Packet<Real>& packet) {
   const Lanes<Real> d;
-  return MaskBits(d, hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>)));
+  return MaskBits(d, OpenMask(d, packet));
 }
 
 // What leaf tests read of the rays, and only of the kinds that the tree has.
@@ -121,15 +154,24 @@ HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packe
   if (tree.sphere_count > 0) hn::Store(ScreenScale(d, dx, dy, dz), d, packet.screen);
 }
 
+// Bit k: the direction's component along axis k has a minus sign.
+template <class D, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<IdLanes<D>> Octants(D d, const Packet<Real>& packet) {
+  const IdLanes<D> di;
+  const auto sign = [&](int axis) SHEAF_LAMBDA {
+    return hn::ShiftRight<sizeof(Real) * 8 - 1>(
+        hn::BitCast(di, hn::Load(d, packet.direction[axis])));
+  };
+  return hn::Or(sign(0), hn::Or(hn::ShiftLeft<1>(sign(1)), hn::ShiftLeft<2>(sign(2))));
+}
+
 // FitsBoxes and BoxOf of src/scalar/ray_box.h.
 template <typename Real>
 HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
   if (packet.has_boxes) return;
   packet.has_boxes = true;
   const Lanes<Real> d;
-  const IdLanes<Lanes<Real>> di;
   auto size = hn::Zero(d), furthest = hn::Zero(d), reach = hn::Zero(d);
-  Real tree_furthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto o = hn::Load(d, packet.origin[axis]);
     const auto lower = hn::Set(d, static_cast<Real>(tree.lower[axis]));
@@ -137,21 +179,17 @@ HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
     size = hn::Max(size, hn::Abs(hn::Load(d, packet.direction[axis])));
     furthest = hn::Max(furthest, hn::Abs(o));
     reach = hn::Max(reach, hn::Max(hn::Sub(upper, o), hn::Sub(o, lower)));
-    tree_furthest =
-        std::max({tree_furthest, Real(-tree.lower[axis]), static_cast<Real>(tree.upper[axis])});
   }
   // NaN passes none of these; such a lane is kDone anyway.
   auto fits = hn::And(hn::Ge(size, hn::Set(d, Real(kMinBoxDirection))),
                       hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
   fits = hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate))));
   fits = hn::And(fits, hn::Ge(hn::Load(d, packet.t_min), hn::Zero(d)));
-  if (tree_furthest > kMaxBoxCoordinate) fits = NoLanes(d);
+  if (!IsWithinBoxLimits(tree)) fits = NoLanes(d);
   packet.without_boxes = ~MaskBits(d, fits) & OpenLanes(packet);
 
   const auto least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));
   const auto steep_slack = hn::Mul(reach, hn::Set(d, Real(2 * kMinBoxSlope)));
-  auto octant = hn::Zero(di);
-  packet.steep_lanes = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto o = hn::Load(d, packet.origin[axis]);
     const auto dir = hn::Load(d, packet.direction[axis]);
@@ -164,13 +202,10 @@ HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
         hn::Div(hn::Set(d, Real(1)), hn::IfThenElse(steep, hn::CopySignToAbs(least, dir), dir));
     hn::Store(scale, d, packet.scale[axis]);
     hn::Store(slack, d, packet.slack[axis]);
-    packet.steep_lanes |= MaskBits(d, steep);
     hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), scale)), d, packet.enter[axis]);
     hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), scale)), d, packet.leave[axis]);
-    const auto backward = hn::ShiftRight<sizeof(Real) * 8 - 1>(hn::BitCast(di, dir));
-    octant = hn::Or(octant, hn::ShiftLeftSame(backward, axis));
   }
-  StoreIds(d, octant, packet.octant);
+  StoreIds(d, Octants(d, packet), packet.octant);
 }
 
 }  // namespace sheaf::simd::HWY_NAMESPACE

@@ -6,19 +6,48 @@
 #define SHEAF_SIMD_TRACE_INL_H_
 #endif
 
+#include "simd/stray_rays-inl.h"
 #include "simd/trace_sheet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-// Calls finish(packet, i) for every packet of the batch once its rays are traced; i is the position
-// of its first ray.
+// The packet's open rays as rays, or in a packet as far as they go together.
+template <Query kQuery, typename Real>
+HWY_INLINE void TraceAlone(const TreeView<Real>& tree, Packet<Real>& packet) {
+  PrepareBoxes(tree, packet);
+  TraceEveryLeaf<kQuery>(tree, packet, packet.without_boxes);
+  TracePacket<kQuery>(tree, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
+}
+
+// Traces the strays, and calls finish.Scatter(packet, positions, n) for every n of them.
+template <Query kQuery, typename Real, class Finish>
+HWY_NOINLINE void TraceStrays(const TreeView<Real>& tree, const RayView<Real>& rays,
+                              const RayIntervals<Real>& intervals, StrayRays& strays,
+                              const Finish& finish) {
+  const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  std::uint32_t sorted[StrayRays::kCapacity];
+  SortByDirection(strays, sorted);
+  Packet<Real> packet;
+  for (std::uint32_t i = 0; i < strays.count; i += lanes) {
+    const std::uint32_t n = std::min(lanes, strays.count - i);
+    GatherPacket(rays, intervals, sorted + i, n, packet);
+    PrepareLeafTerms(tree, packet);
+    TraceAlone<kQuery>(tree, packet);
+    finish.Scatter(packet, sorted + i, n);
+  }
+  strays.count = 0;
+}
+
+// Calls finish.Store(packet, i) for every packet of the batch once its rays are traced; i is the
+// position of its first ray. What becomes of strays comes later, through finish.Scatter.
 template <Query kQuery, typename Real, class Finish>
 HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays,
                            const RayIntervals<Real>& intervals, std::uint32_t count,
-                           Coherence coherence, Finish finish) {
+                           Coherence coherence, const Finish& finish) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Tile<Real> tile;
+  StrayRays strays;
   // A tree of one node holds so few primitives that its boxes do not pay.
   const bool is_flat = tree.node_count <= 1;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
@@ -37,20 +66,17 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
     } else if (coherence != Coherence::kIncoherent && PrepareSheet(tree, tile)) {
       TraceSheet<kQuery>(tree, tile);
     } else {
+      if (strays.count + lanes * lanes > StrayRays::kCapacity) {
+        TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
+      }
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         Packet<Real>& packet = tile.packets[k];
-        PrepareBoxes(tree, packet);
-        TraceEveryLeaf<kQuery>(tree, packet, packet.without_boxes);
-        const std::uint32_t open = OpenLanes(packet) & ~packet.without_boxes;
-        if (coherence == Coherence::kIncoherent) {
-          TraceRays<kQuery>(tree, packet, open, 0);
-        } else {
-          TracePacket<kQuery>(tree, packet, open, 0);
-        }
+        if (!PutAside(packet, begin + k * lanes, strays)) TraceAlone<kQuery>(tree, packet);
       }
     }
-    for (std::uint32_t k = 0; k < tile.count; ++k) finish(tile.packets[k], begin + k * lanes);
+    for (std::uint32_t k = 0; k < tile.count; ++k) finish.Store(tile.packets[k], begin + k * lanes);
   }
+  TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
 }
 
 }  // namespace sheaf::simd::HWY_NAMESPACE

@@ -12,22 +12,42 @@ HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
+struct ClosestOutput {
+  const RayIntervals<Real>& intervals;
+  const HitOutput<Real>& hits;
+
+  // Rays [i, i + lanes).
+  HWY_INLINE void Store(const Packet<Real>& packet, std::uint32_t i) const {
+    const Lanes<Real> d;
+    const auto id = LoadIds(d, packet.id);
+    const auto none = hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive);
+    const auto missed = hn::RebindMask(d, hn::Eq(id, none));
+    const auto t = hn::Load(d, packet.t_best);
+    hn::StoreU(hn::IfThenElse(missed, LoadTMax(d, intervals, i), t), d, hits.t + i);
+    hn::StoreU(hn::Load(d, packet.u), d, hits.u + i);
+    hn::StoreU(hn::Load(d, packet.v), d, hits.v + i);
+    StoreIds(d, id, hits.primitive + i);
+  }
+
+  // Traceable rays: t_best is t_max where one missed.
+  HWY_INLINE void Scatter(const Packet<Real>& packet, const std::uint32_t* positions,
+                          std::uint32_t n) const {
+    for (std::uint32_t lane = 0; lane < n; ++lane) {
+      const std::uint32_t i = positions[lane];
+      hits.t[i] = packet.t_best[lane];
+      hits.u[i] = packet.u[lane];
+      hits.v[i] = packet.v[lane];
+      hits.primitive[i] = packet.id[lane];
+    }
+  }
+};
+
+template <typename Real>
 void TraceClosestLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                        const RayIntervals<Real>& intervals, std::uint32_t count,
                        Coherence coherence, const HitOutput<Real>& hits) {
-  const Lanes<Real> d;
   TraceBatch<Query::kClosest>(tree, rays, intervals, count, coherence,
-                              [&](const Packet<Real>& packet, std::uint32_t i) HWY_ATTR {
-                                const auto id = LoadIds(d, packet.id);
-                                const auto none = hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive);
-                                const auto missed = hn::RebindMask(d, hn::Eq(id, none));
-                                const auto t = hn::Load(d, packet.t_best);
-                                hn::StoreU(hn::IfThenElse(missed, LoadTMax(d, intervals, i), t), d,
-                                           hits.t + i);
-                                hn::StoreU(hn::Load(d, packet.u), d, hits.u + i);
-                                hn::StoreU(hn::Load(d, packet.v), d, hits.v + i);
-                                StoreIds(d, id, hits.primitive + i);
-                              });
+                              ClosestOutput<Real>{intervals, hits});
 }
 
 constexpr auto& TraceClosestF32 = TraceClosestLanes<float>;

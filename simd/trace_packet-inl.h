@@ -13,14 +13,7 @@ namespace sheaf::simd::HWY_NAMESPACE {
 
 // Up to so many rays go on one by one.
 template <typename Real>
-inline constexpr std::uint32_t kFewRays = kPacketSize<Real> / 4;
-
-template <class D>
-HWY_INLINE hn::Mask<D> LanesFromBits(D d, std::uint32_t bits) {
-  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
-                                 static_cast<std::uint8_t>(bits >> 8)};
-  return hn::LoadMaskBits(d, bytes);
-}
+inline constexpr std::uint32_t kFewRays = std::max(1u, kPacketSize<Real> / 4);
 
 // The bundle whose lanes are the rays of `lanes` (bits), all of one octant.
 template <typename Real>

@@ -31,7 +31,7 @@ HWY_INLINE bool HasOneDirection(const Tile<Real>& tile) {
       alike = hn::And(alike, hn::Eq(hn::Load(d, packet.direction[axis]),
                                     hn::Set(d, first.direction[axis][one])));
     }
-    const auto open = hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>));
+    const auto open = OpenMask(d, packet);
     unlike = hn::Or(unlike, hn::AndNot(alike, open));
   }
   return hn::AllFalse(d, unlike);

@@ -18,8 +18,9 @@ namespace sheaf::simd::HWY_NAMESPACE {
 // Up to so many packets of a tile go on as packets. Occlusion ends at any hit, which leaves holes
 // in a tile, and it is asked of rays to points at all depths: it pays to give up tiles sooner.
 template <Query kQuery, typename Real>
-inline constexpr std::uint32_t kFewPackets =
-    kQuery == Query::kOccluded ? kPacketSize<Real> / 2 : kPacketSize<Real> / 8;
+inline constexpr std::uint32_t kFewPackets = std::max(1u, kQuery == Query::kOccluded
+                                                              ? kPacketSize<Real> / 2
+                                                              : kPacketSize<Real> / 8);
 
 // Rounding of slopes, products and sums below, generously: a part of the largest number in play.
 template <typename Real>
@@ -48,7 +49,6 @@ struct alignas(kAlignment) Tile {
 template <typename Real>
 struct alignas(kAlignment) TileLeaf {
   Real x[3][kMaxLeafSize], y[3][kMaxLeafSize], z[3][kMaxLeafSize];  // [vertex]
-  Real radius[kMaxLeafSize];                                        // of spheres
   Real nearest[kMaxLeafSize];  // the least distance along the dominant axis
   Real depth[kMaxLeafSize];    // the largest |z|
   Real slack[kMaxLeafSize];    // of x and y once sheared
@@ -56,7 +56,7 @@ struct alignas(kAlignment) TileLeaf {
 
 // The furthest that a packet's open rays still go, along the dominant axis.
 template <typename Real>
-HWY_INLINE Real PacketEnd(const Tile<Real>& tile, const Packet<Real>& packet) {
+HWY_INLINE Real LastDepth(const Tile<Real>& tile, const Packet<Real>& packet) {
   const Lanes<Real> d;
   const auto length = hn::Abs(hn::Load(d, packet.direction[tile.kz]));
   const auto t = hn::Load(d, packet.t_best);
@@ -83,15 +83,14 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
   tile.kx = tile.kz == 2 ? 0 : tile.kz + 1;
   tile.ky = tile.kz == 0 ? 2 : tile.kz - 1;
   const int order[3] = {tile.kx, tile.ky, tile.kz};
-  Real furthest = 0;
+  bool is_within = IsWithinBoxLimits(tree);
   bool backward[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const Real o = first.origin[axis][one], lower = tree.lower[axis], upper = tree.upper[axis];
-    furthest = std::max({furthest, std::abs(o), -lower, upper});
+    is_within &= std::abs(first.origin[axis][one]) <= kMaxBoxCoordinate;
     tile.origin[axis] = first.origin[order[axis]][one];
     backward[axis] = std::signbit(first.direction[axis][one]);
   }
-  if (!(furthest <= kMaxBoxCoordinate)) return false;
+  if (!is_within) return false;
   tile.sign = backward[tile.kz] ? Real(-1) : Real(1);
 
   // By packet, the range of its shears. They have the signs of the octant, so that their magnitudes
@@ -109,8 +108,7 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
     bundle.t_last[k] = kDone<Real>;
     if (k >= tile.count) continue;
     const Packet<Real>& packet = tile.packets[k];
-    const auto t_best = hn::Load(d, packet.t_best);
-    const auto open = hn::Gt(t_best, hn::Set(d, kDone<Real>));
+    const auto open = OpenMask(d, packet);
     if (hn::AllFalse(d, open)) continue;
     const auto dz = hn::Mul(hn::Load(d, packet.direction[tile.kz]), sign_z);
     // Magnitudes of the shears, where the signs are the octant's.
@@ -138,7 +136,7 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
     high_x[k] = highest(shear_x);
     low_y[k] = lowest(shear_y);
     high_y[k] = highest(shear_y);
-    bundle.t_last[k] = PacketEnd(tile, packet);
+    bundle.t_last[k] = LastDepth(tile, packet);
   }
   if (!hn::AllFalse(d, unlike)) return false;
 
@@ -155,10 +153,9 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
     const auto leave = hn::Mul(hn::Div(unit, low), hn::Set(d, 1 + kTileSlack<Real>));
     hn::Store(enter, d, bundle.enter_scale[axis]);
     hn::Store(leave, d, bundle.leave_scale[axis]);
-    const auto size_of = [&](auto v) SHEAF_LAMBDA { return hn::Abs(v); };
     const Real sign = backward[axis] ? Real(-1) : Real(1);
-    bundle.all_enter_scale[axis] = sign * hn::GetLane(hn::MinOfLanes(d, size_of(enter)));
-    bundle.all_leave_scale[axis] = sign * hn::GetLane(hn::MaxOfLanes(d, size_of(leave)));
+    bundle.all_enter_scale[axis] = sign * hn::GetLane(hn::MinOfLanes(d, hn::Abs(enter)));
+    bundle.all_leave_scale[axis] = sign * hn::GetLane(hn::MaxOfLanes(d, hn::Abs(leave)));
   };
   // An empty packet takes the first one's range.
   for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
@@ -287,7 +284,7 @@ HWY_INLINE void TrianglesAgainstTile(const TreeView<Real>& tree, std::uint32_t c
     Packet<Real>& packet = tile.packets[k];
     std::uint32_t met = CullTriangles(tile, leaf, n, k);
     if (met == 0) continue;
-    const auto open = hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>));
+    const auto open = OpenMask(d, packet);
     for (; met != 0; met &= met - 1) {
       const int i = std::countr_zero(met);
       const auto x = [&](int v) SHEAF_LAMBDA { return hn::Set(d, leaf.x[v][i]); };
@@ -296,12 +293,12 @@ HWY_INLINE void TrianglesAgainstTile(const TreeView<Real>& tree, std::uint32_t c
       TriangleAgainstPacket<kQuery>(d, packet, tile.kz, x(0), y(0), z(0), x(1), y(1), z(1), x(2),
                                     y(2), z(2), tree.triangle_id[first + i], open);
     }
-    tile.bundle.t_last[k] = PacketEnd(tile, packet);
+    tile.bundle.t_last[k] = LastDepth(tile, packet);
   }
 }
 
 // Spheres that some ray of packet k may hit, as bits. Sheared along a ray, a sphere reaches its
-// radius times sqrt(1 + shear^2) < radius * (1 + shear^2 / 2) to either side.
+// radius times sqrt(1 + shear^2) to either side.
 template <typename Real>
 HWY_INLINE std::uint32_t CullSpheres(const Tile<Real>& tile, const Real* block, std::uint32_t n,
                                      std::uint32_t k) {
@@ -309,7 +306,7 @@ HWY_INLINE std::uint32_t CullSpheres(const Tile<Real>& tile, const Real* block, 
   using V = hn::Vec<LeafLanes<Real>>;
   const auto side = [&](Real middle, Real half) {
     const Real most = std::abs(middle) + half;
-    return (std::sqrt(1 + most * most)) * (1 + kTileSlack<Real>);
+    return std::sqrt(1 + most * most) * (1 + kTileSlack<Real>);
   };
   const V mx = hn::Set(d, tile.middle_x[k]), my = hn::Set(d, tile.middle_y[k]);
   const V hx = hn::Set(d, tile.half_x[k]), hy = hn::Set(d, tile.half_y[k]);
@@ -346,9 +343,9 @@ HWY_INLINE void SpheresAgainstTile(const TreeView<Real>& tree, std::uint32_t chi
     Packet<Real>& packet = tile.packets[k];
     const std::uint32_t met = CullSpheres(tile, block, n, k);
     if (met == 0) continue;
-    const auto open = hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>));
+    const auto open = OpenMask(d, packet);
     LeafAgainstPacket<kQuery>(d, tree, child, met, packet, open);
-    tile.bundle.t_last[k] = PacketEnd(tile, packet);
+    tile.bundle.t_last[k] = LastDepth(tile, packet);
   }
 }
 
@@ -375,7 +372,7 @@ HWY_NOINLINE void TraceTile(const TreeView<Real>& tree, Tile<Real>& tile) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
       PrepareBoxes(tree, tile.packets[k]);
       TracePacketFrom<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]), child);
-      tile.bundle.t_last[k] = PacketEnd(tile, tile.packets[k]);
+      tile.bundle.t_last[k] = LastDepth(tile, tile.packets[k]);
     }
     return Visit::kDone;
   });

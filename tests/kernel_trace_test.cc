@@ -21,6 +21,11 @@ bool SameBits(Real a, Real b) {
   return std::memcmp(&a, &b, sizeof(Real)) == 0;
 }
 
+template <typename Real>
+scalar::Vec3<Real> As(const Vec3d& v) {
+  return scalar::Vec3<double>{v.x, v.y, v.z}.To<Real>();
+}
+
 // Rays in the arrays that a caller would hand in, `offset` elements into them.
 template <typename Real>
 struct RayBatch {
@@ -153,7 +158,7 @@ TEST_CASE_TEMPLATE("random scenes trace as the scalar specification", Real, floa
     const auto count = static_cast<std::uint32_t>(objects);
     CheckEverywhere<Real>({RandomScene(random, objects), RandomRays<Real>(random, 512, count)});
   }
-  CheckEverywhere<Real>({RandomScene(random, 3000), RandomRays<Real>(random, 2048, 3000)});
+  CheckEverywhere<Real>({RandomScene(random, 3000), RandomRays<Real>(random, 6000, 3000)});
 }
 
 // Many small primitives around the origin, so that trees are deep and rays pass many of them.
@@ -187,8 +192,8 @@ std::vector<scalar::Ray<Real>> GridRays(Random& random, Vec3d origin, Vec3d towa
     // Lengths differ, as those of shadow rays do.
     const Vec3d direction = (towards + a * right + b * up) * Uniform(random, 0.2, 5);
     scalar::Ray<Real> ray;
-    ray.origin = scalar::Vec3<double>{origin.x, origin.y, origin.z}.To<Real>();
-    ray.direction = scalar::Vec3<double>{direction.x, direction.y, direction.z}.To<Real>();
+    ray.origin = As<Real>(origin);
+    ray.direction = As<Real>(direction);
     if (random() % 16 == 0) ray.t_max = static_cast<Real>(Uniform(random, 0, 3));
     if (random() % 64 == 0) ray.direction.x = std::numeric_limits<Real>::quiet_NaN();
     rays.push_back(ray);
@@ -225,10 +230,9 @@ TEST_CASE_TEMPLATE("rays of one direction trace as the scalar specification", Re
     for (std::size_t i = 0; i < rays.size(); ++i) {
       scalar::Ray<Real>& ray = rays[i];
       const Vec3d at = UniformPoint(random, -0.01, 0.01) - 5.0 * towards;
-      const scalar::Vec3<double> start{at.x, at.y, at.z};
       if (!scalar::IsFinite(ray.direction)) ray.direction = {};
-      ray.origin = ray.direction + start.To<Real>();
-      ray.direction = scalar::Vec3<double>{towards.x, towards.y, towards.z}.To<Real>();
+      ray.origin = ray.direction + As<Real>(at);
+      ray.direction = As<Real>(towards);
       if (round == 9 && i % 3 == 0) ray.direction.x = -ray.direction.x;
       if (i % 32 == 0) ray.t_max = static_cast<Real>(Uniform(random, 0, 6));
       if (i % 50 == 0) ray.direction.z = std::numeric_limits<Real>::infinity();
@@ -266,10 +270,7 @@ TEST_CASE_TEMPLATE("degenerate rays trace as the scalar specification", Real, fl
         const Vec3d target = k % 3 == 0 ? v[k / 3] : in_plane;
         if (k == 5) origin = target + Vec3d(0, 0, 5);
         if (k == 4) origin = target - Vec3d(3, 0, 0);
-        const auto real = [](const Vec3d& p) {
-          return scalar::Vec3<double>{p.x, p.y, p.z}.To<Real>();
-        };
-        scalar::Ray<Real> ray{real(origin), real(target) - real(origin)};
+        scalar::Ray<Real> ray{As<Real>(origin), As<Real>(target) - As<Real>(origin)};
         if (k == 5) ray.direction = {round % 4 < 2 ? Real(0) : -Real(0), Real(0), Real(-1)};
         if (k == 4) ray.direction = {Real(1), Real(1e-9), Real(-1e-30)};
         rays.push_back(ray);
@@ -300,9 +301,7 @@ TEST_CASE_TEMPLATE("rays and scenes without scale trace as the scalar specificat
     for (const double length : {1e-30, 1e-20, 1.0, 1e17}) {
       for (int i = 0; i < 128; ++i) {
         const Vec3d from = UniformPoint(random, -6, 6), to = UniformPoint(random, -2, 2);
-        const Vec3d origin = from * scale, direction = (to - from) * length;
-        rays.push_back({scalar::Vec3<double>{origin.x, origin.y, origin.z}.To<Real>(),
-                        scalar::Vec3<double>{direction.x, direction.y, direction.z}.To<Real>()});
+        rays.push_back({As<Real>(from * scale), As<Real>((to - from) * length)});
         if (i % 8 == 0) rays.back().t_min = Real(-1);
       }
     }

@@ -32,12 +32,8 @@ Real LargestComponent(Vec3<Real> a) {
 template <typename Real>
 bool FitsBoxes(const TreeView<Real>& tree, const Ray<Real>& ray) {
   const Real size = LargestComponent(ray.direction);
-  Real reach = LargestComponent(ray.origin);
-  for (int axis = 0; axis < 3; ++axis) {
-    reach = std::max({reach, Real(-tree.lower[axis]), Real(tree.upper[axis])});
-  }
-  return reach <= kMaxBoxCoordinate && size >= kMinBoxDirection && size <= kMaxBoxDirection &&
-         ray.t_min >= 0;
+  return IsWithinBoxLimits(tree) && LargestComponent(ray.origin) <= kMaxBoxCoordinate &&
+         size >= kMinBoxDirection && size <= kMaxBoxDirection && ray.t_min >= 0;
 }
 
 template <typename Real>
