@@ -23,7 +23,6 @@ HWY_INLINE bool HasOneDirection(const Tile<Real>& tile) {
   const std::uint32_t open_in_first = OpenLanes(first);
   if (open_in_first == 0) return false;
   const int one = std::countr_zero(open_in_first);
-  auto unlike = NoLanes(d);
   for (std::uint32_t k = 0; k < tile.count; ++k) {
     const Packet<Real>& packet = tile.packets[k];
     auto alike = AllLanes(d);
@@ -31,10 +30,9 @@ HWY_INLINE bool HasOneDirection(const Tile<Real>& tile) {
       alike = hn::And(alike, hn::Eq(hn::Load(d, packet.direction[axis]),
                                     hn::Set(d, first.direction[axis][one])));
     }
-    const auto open = OpenMask(d, packet);
-    unlike = hn::Or(unlike, hn::AndNot(alike, open));
+    if (!hn::AllFalse(d, hn::AndNot(alike, OpenMask(d, packet)))) return false;
   }
-  return hn::AllFalse(d, unlike);
+  return true;
 }
 
 // The furthest that an open ray of the packet still goes.

@@ -102,7 +102,6 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
                            SHEAF_LAMBDA { return hn::Set(d, backward[axis] ? Real(-1) : Real(1)); };
   const auto sign_x = sign_of(tile.kx), sign_y = sign_of(tile.ky), sign_z = sign_of(tile.kz);
   const auto least = hn::Set(d, Real(kMinBoxSlope));
-  auto unlike = NoLanes(d);
   for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
     low_x[k] = low_y[k] = high_x[k] = high_y[k] = Real(1);
     bundle.t_last[k] = kDone<Real>;
@@ -124,7 +123,7 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
       alike = hn::And(
           alike, hn::Eq(hn::Load(d, packet.origin[axis]), hn::Set(d, first.origin[axis][one])));
     }
-    unlike = hn::Or(unlike, hn::AndNot(alike, open));
+    if (!hn::AllFalse(d, hn::AndNot(alike, open))) return false;
     const Real huge = kDefaultTMax<Real>;
     const auto lowest = [&](auto v) SHEAF_LAMBDA {
       return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, v, hn::Set(d, huge))));
@@ -138,7 +137,6 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
     high_y[k] = highest(shear_y);
     bundle.t_last[k] = LastDepth(tile, packet);
   }
-  if (!hn::AllFalse(d, unlike)) return false;
 
   bundle.octant = (backward[0] ? 1u : 0u) | (backward[1] ? 2u : 0u) | (backward[2] ? 4u : 0u);
   const auto half = hn::Set(d, Real(0.5)), slack_of_half = hn::Set(d, kTileSlack<Real>);
