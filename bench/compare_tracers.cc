@@ -28,7 +28,7 @@ Coherence CoherenceOf(RayKind kind) {
   switch (kind) {
     case RayKind::kPrimary:
     case RayKind::kShadow:
-      return Coherence::kCoherent;
+      return Coherence::kCommonOrigin;
     case RayKind::kMirror:
       return Coherence::kUnknown;
     case RayKind::kDiffuse:

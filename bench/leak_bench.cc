@@ -140,10 +140,10 @@ bool IsLeak(std::uint32_t primitive, float t) {
 
 void CountSheaf(const Geometry& geometry, const RayBatch& batch, std::uint64_t number,
                 Leaks& leaks) {
-  constexpr Coherence kCoherences[] = {Coherence::kUnknown, Coherence::kIncoherent,
-                                       Coherence::kCoherent};
+  constexpr Coherence kCoherences[] = {Coherence::kUnknown, Coherence::kCommonOrigin,
+                                       Coherence::kCoherent, Coherence::kIncoherent};
   TraceOptions options;
-  options.coherence = kCoherences[number / 3 % 3];
+  options.coherence = kCoherences[number / 3 % 4];
   std::vector<float> t(batch.count);
   std::vector<std::uint32_t> primitive(batch.count), occluded(batch.count);
   TraceClosest(geometry, batch.view(), batch.count, {.t = t.data(), .primitive = primitive.data()},

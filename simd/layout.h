@@ -276,9 +276,10 @@ enum class Query { kClosest, kOccluded };
 
 // What a caller knows of a batch of rays. It may steer the choice of a kernel, never a result.
 enum class Coherence {
-  kUnknown,     // measured, packet by packet
-  kIncoherent,  // neighbours go different ways
-  kCoherent,    // neighbours in the batch go similar ways
+  kUnknown,       // measured, packet by packet
+  kCommonOrigin,  // the same, but no common direction is looked for
+  kCoherent,      // neighbours go similar ways from different origins: packets as they come
+  kIncoherent,    // neighbours go different ways: sorted by direction before anything else
 };
 
 // ---- What a frame is shaded with ----

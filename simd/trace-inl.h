@@ -48,6 +48,9 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Tile<Real> tile;
   StrayRays strays;
+  const bool may_be_tile =
+      coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin;
+  const bool may_be_sheet = coherence == Coherence::kUnknown;
   // A tree of one node holds so few primitives that its boxes do not pay.
   const bool is_flat = tree.node_count <= 1;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
@@ -61,9 +64,9 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         TraceEveryLeaf<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]));
       }
-    } else if (coherence != Coherence::kIncoherent && PrepareTile(tree, tile)) {
+    } else if (may_be_tile && PrepareTile(tree, tile)) {
       TraceTile<kQuery>(tree, tile);
-    } else if (coherence != Coherence::kIncoherent && PrepareSheet(tree, tile)) {
+    } else if (may_be_sheet && PrepareSheet(tree, tile)) {
       TraceSheet<kQuery>(tree, tile);
     } else {
       if (strays.count + lanes * lanes > StrayRays::kCapacity) {
@@ -71,7 +74,9 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
       }
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         Packet<Real>& packet = tile.packets[k];
-        if (!PutAside(packet, begin + k * lanes, strays)) TraceAlone<kQuery>(tree, packet);
+        const bool is_aside =
+            coherence != Coherence::kCoherent && PutAside(packet, begin + k * lanes, strays);
+        if (!is_aside) TraceAlone<kQuery>(tree, packet);
       }
     }
     for (std::uint32_t k = 0; k < tile.count; ++k) finish.Store(tile.packets[k], begin + k * lanes);

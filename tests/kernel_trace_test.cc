@@ -14,7 +14,8 @@
 namespace sheaf {
 namespace {
 
-constexpr Coherence kHints[] = {Coherence::kUnknown, Coherence::kIncoherent, Coherence::kCoherent};
+constexpr Coherence kHints[] = {Coherence::kUnknown, Coherence::kCommonOrigin, Coherence::kCoherent,
+                                Coherence::kIncoherent};
 
 template <typename Real>
 bool SameBits(Real a, Real b) {
