@@ -259,6 +259,7 @@ struct TreeView {
   const std::uint32_t* triangle_id;  // primitive id by position
   const std::uint32_t* sphere_id;
   float lower[3], upper[3];  // of all boxes; lower > upper without primitives
+  bool skips_boxes;          // so few primitives that boxes do not pay; set where there is no node
 };
 
 // Whether box tests hold for the tree.
@@ -286,16 +287,40 @@ enum class Coherence {
 
 enum class BaseColour : std::uint32_t { kConstant, kChecker };
 
+// What a material asks for; what it does not ask for is skipped. Asking for more changes no bit.
+inline constexpr std::uint32_t kNeedsCoordinates = 1;    // u and v, for its base colour
+inline constexpr std::uint32_t kNeedsLights = 2;         // diffuse or highlight
+inline constexpr std::uint32_t kNeedsHighlight = 4;      // a power for each light
+inline constexpr std::uint32_t kNeedsChildren = 8;       // reflected or refracted rays
+inline constexpr std::uint32_t kNeedsTransmission = 16;  // Fresnel's split
+inline constexpr std::uint32_t kNeedsAll = 31;
+
 template <typename Real>
 struct MaterialData {
+  std::uint32_t needs;  // NeedsOf(*this), or more
   BaseColour kind;
-  Real even[3], odd[3];  // linear RGB; `odd` of a checker alone
+  Real even[3], odd[3];  // linear RGB; the same where there is no checker
   Real cells[2];         // checker cells across the unit interval of u and of v
   Real ambient[3];       // ka times the ambient light
   Real kd, ks, shininess;
   Real reflect[3], transmit[3];
   Real ior;
 };
+
+template <typename Real>
+constexpr bool AnyPositive(const Real (&c)[3]) {
+  return c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
+template <typename Real>
+constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
+  const bool transmits = AnyPositive(material.transmit);
+  return (material.kind != BaseColour::kConstant ? kNeedsCoordinates : 0) |
+         (material.kd > 0 || material.ks > 0 ? kNeedsLights : 0) |
+         (material.ks > 0 ? kNeedsHighlight : 0) |
+         (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
+         (transmits ? kNeedsTransmission : 0);
+}
 
 enum class LightKind : std::uint32_t {
   kPointFromLight,    // shadow rays run from the light, so that a batch shares its origin

@@ -11,17 +11,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-template <typename Real>
-HWY_INLINE bool Transmits(const MaterialData<Real>& material) {
-  return material.transmit[0] > 0 || material.transmit[1] > 0 || material.transmit[2] > 0;
-}
-
 // A transparent body has no light of its own inside.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Mask<D> HasLocalLight(D d, const MaterialData<Real>& material,
                                      const SurfaceView<Real>& surfaces, std::uint32_t i) {
   const IdLanes<D> di;
-  if (!Transmits(material)) return hn::Eq(hn::Zero(d), hn::Zero(d));
+  if (!AnyPositive(material.transmit)) return AllLanes(d);
   const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
   return hn::RebindMask(d, hn::Eq(hn::And(LoadIds(d, surfaces.source + i), bit), hn::Zero(di)));
 }
@@ -34,7 +29,7 @@ HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
   r = hn::Set(d, material.even[0]);
   g = hn::Set(d, material.even[1]);
   b = hn::Set(d, material.even[2]);
-  if (material.kind == BaseColour::kConstant) return;
+  if (!(material.needs & kNeedsCoordinates)) return;
   const V u = hn::Mul(hn::LoadU(d, surfaces.u + i), hn::Set(d, material.cells[0]));
   const V v = hn::Mul(hn::LoadU(d, surfaces.v + i), hn::Set(d, material.cells[1]));
   const V cell = hn::Add(hn::Floor(u), hn::Floor(v));

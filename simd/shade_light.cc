@@ -29,7 +29,7 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     const V attenuation = hn::Div(one, falloff);
     const V diffuse = hn::Mul(hn::Set(d, material.kd), n_dot_l);
     V highlight = hn::Zero(d);
-    if (material.ks > 0) {
+    if (material.needs & kNeedsHighlight) {
       V hx = hn::Sub(lx, hn::LoadU(d, surfaces.direction_x + i));
       V hy = hn::Sub(ly, hn::LoadU(d, surfaces.direction_y + i));
       V hz = hn::Sub(lz, hn::LoadU(d, surfaces.direction_z + i));

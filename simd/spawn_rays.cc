@@ -49,7 +49,7 @@ HWY_INLINE void FresnelSplit(D d, V eta, V cos_i, V& reflectance, V& cos_t, M& i
 
 template <typename Real>
 SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                           std::uint32_t count, const PathView<Real>& parents,
+                           std::uint32_t count, const PathView<Real>& parents, Real min_weight,
                            const RayOutput<Real>& reflected_rays,
                            const PathOutput<Real>& reflected_paths,
                            const RayOutput<Real>& refracted_rays,
@@ -58,7 +58,7 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
   const IdLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
   using VI = hn::Vec<IdLanes<Lanes<Real>>>;
-  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1)), least = hn::Set(d, min_weight);
   const VI bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
   SpawnCounts size{0, 0};
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
@@ -88,19 +88,18 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V cos_i = hn::IfThenElseZero(hn::Gt(towards, zero), towards);
     V reflectance = zero, cos_t = zero, eta = one;
     auto is_total = hn::Eq(zero, zero);
-    if (Transmits(material)) {
+    if (material.needs & kNeedsTransmission) {
       const V ior = hn::Set(d, material.ior);
       const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));
       eta = hn::IfThenElse(inside, ior, hn::Div(one, ior));
       FresnelSplit(d, eta, cos_i, reflectance, cos_t, is_total);
     }
 
-    // A child whose weight is 0 is not traced.
     const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, VI from,
                             const RayOutput<Real>& rays, const PathOutput<Real>& paths,
                             std::uint32_t& at) HWY_ATTR {
-      const auto positive = hn::Or(hn::Or(hn::Gt(wr, zero), hn::Gt(wg, zero)), hn::Gt(wb, zero));
-      const auto kept = hn::And(lanes, positive);
+      const auto counts = hn::Or(hn::Or(hn::Gt(wr, least), hn::Gt(wg, least)), hn::Gt(wb, least));
+      const auto kept = hn::And(lanes, counts);
       if (hn::AllFalse(d, kept)) return;
       Normalize(d, x, y, z);
       const auto order = CompactOrder(d, kept);
@@ -158,13 +157,14 @@ HWY_EXPORT(SpawnRaysF64);
 
 template <typename Real>
 SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t count, const PathView<Real>& parents,
+                      std::uint32_t count, const PathView<Real>& parents, Real min_weight,
                       const RayOutput<Real>& reflected_rays,
                       const PathOutput<Real>& reflected_paths,
                       const RayOutput<Real>& refracted_rays,
                       const PathOutput<Real>& refracted_paths) {
-  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, reflected_rays,
-                                         reflected_paths, refracted_rays, refracted_paths);
+  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, min_weight,
+                                         reflected_rays, reflected_paths, refracted_rays,
+                                         refracted_paths);
 }
 template decltype(SpawnRays<float>) SpawnRays<float>;
 template decltype(SpawnRays<double>) SpawnRays<double>;

@@ -13,7 +13,7 @@ namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
 void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
-                         const HitView<Real>& hits, const HitBatch& batch,
+                         const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                          const SurfaceOutput<Real>& surfaces) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
@@ -76,8 +76,10 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
     hn::StoreU(direction_x, dn, surfaces.direction_x + i);
     hn::StoreU(direction_y, dn, surfaces.direction_y + i);
     hn::StoreU(direction_z, dn, surfaces.direction_z + i);
-    hn::StoreU(hn::Zero(dn), dn, surfaces.u + i);
-    hn::StoreU(hn::Zero(dn), dn, surfaces.v + i);
+    if (needs & kNeedsCoordinates) {
+      hn::StoreU(hn::Zero(dn), dn, surfaces.u + i);
+      hn::StoreU(hn::Zero(dn), dn, surfaces.v + i);
+    }
     hn::StoreU(Narrow<Real>(hn::Add(position_error, term_error)), dn, surfaces.offset + i);
     const auto inside = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
     const auto id = LoadIds(dn, batch.primitive + i);
@@ -100,9 +102,9 @@ HWY_EXPORT(SphereSurfacesF64);
 
 template <typename Real>
 void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
-                    const HitView<Real>& hits, const HitBatch& batch,
+                    const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                     const SurfaceOutput<Real>& surfaces) {
-  SHEAF_DISPATCH(Real, SphereSurfaces)(spheres, rays, hits, batch, surfaces);
+  SHEAF_DISPATCH(Real, SphereSurfaces)(spheres, rays, hits, batch, needs, surfaces);
 }
 template decltype(SphereSurfaces<float>) SphereSurfaces<float>;
 template decltype(SphereSurfaces<double>) SphereSurfaces<double>;

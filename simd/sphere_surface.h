@@ -7,10 +7,12 @@
 namespace sheaf::simd {
 
 // Writes surfaces[0, batch.count) from the batch's rays, hits and spheres. Directions are unit
-// vectors. Bits: as sheaf::scalar::SphereSurface. Reads and writes PaddedCount(batch.count) lanes.
+// vectors. u and v are left
+// alone unless `needs` has kNeedsCoordinates. Bits: as sheaf::scalar::SphereSurface. Reads and
+// writes PaddedCount(batch.count) lanes.
 template <typename Real>
 void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
-                    const HitView<Real>& hits, const HitBatch& batch,
+                    const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                     const SurfaceOutput<Real>& surfaces);
 
 }  // namespace sheaf::simd

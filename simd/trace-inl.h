@@ -51,8 +51,6 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   const bool may_be_tile =
       coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin;
   const bool may_be_sheet = coherence == Coherence::kUnknown;
-  // A tree of one node holds so few primitives that its boxes do not pay.
-  const bool is_flat = tree.node_count <= 1;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
     tile.count = 0;
     for (std::uint32_t i = begin; i < count && tile.count < lanes; i += lanes) {
@@ -60,7 +58,7 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
       LoadPacket(rays, intervals, i, count, packet);
       PrepareLeafTerms(tree, packet);
     }
-    if (is_flat) {
+    if (tree.skips_boxes) {
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         TraceEveryLeaf<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]));
       }

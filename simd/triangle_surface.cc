@@ -13,7 +13,7 @@ namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
 void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
-                           const HitView<Real>& hits, const HitBatch& batch,
+                           const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                            const SurfaceOutput<Real>& surfaces) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
@@ -80,8 +80,10 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
                           HWY_ATTR { return Widen(of_local(triangles.uv[number][axis])); };
       return Narrow<Real>(mean(at(0), at(1), at(2)));
     };
-    hn::StoreU(surface_coordinate(0), dn, surfaces.u + i);
-    hn::StoreU(surface_coordinate(1), dn, surfaces.v + i);
+    if (needs & kNeedsCoordinates) {
+      hn::StoreU(surface_coordinate(0), dn, surfaces.u + i);
+      hn::StoreU(surface_coordinate(1), dn, surfaces.v + i);
+    }
     hn::StoreU(Narrow<Real>(error), dn, surfaces.offset + i);
     const auto inside =
         hn::Ne(Narrow<Real>(hn::IfThenElseZero(inside_wide, hn::Set(dw, Wide(1)))), hn::Zero(dn));
@@ -106,9 +108,9 @@ HWY_EXPORT(TriangleSurfacesF64);
 
 template <typename Real>
 void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
-                      const HitView<Real>& hits, const HitBatch& batch,
+                      const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                       const SurfaceOutput<Real>& surfaces) {
-  SHEAF_DISPATCH(Real, TriangleSurfaces)(triangles, rays, hits, batch, surfaces);
+  SHEAF_DISPATCH(Real, TriangleSurfaces)(triangles, rays, hits, batch, needs, surfaces);
 }
 template decltype(TriangleSurfaces<float>) TriangleSurfaces<float>;
 template decltype(TriangleSurfaces<double>) TriangleSurfaces<double>;

@@ -6,11 +6,12 @@
 
 namespace sheaf::simd {
 
-// Writes surfaces[0, batch.count) from the batch's rays, hits and triangles. Bits: as
+// Writes surfaces[0, batch.count) from the batch's rays, hits and triangles. u and v are left
+// alone unless `needs` has kNeedsCoordinates. Bits: as
 // sheaf::scalar::TriangleSurface. Reads and writes PaddedCount(batch.count) lanes.
 template <typename Real>
 void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
-                      const HitView<Real>& hits, const HitBatch& batch,
+                      const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                       const SurfaceOutput<Real>& surfaces);
 
 }  // namespace sheaf::simd

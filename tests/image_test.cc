@@ -284,6 +284,60 @@ TEST_CASE("scenes with everything have the same bits on every target") {
   }
 }
 
+Scene GlassAndMirrors();
+
+// What a scene does not need is left out; with everything forced the bits are the same.
+TEST_CASE("skipping changes no bit") {
+  std::vector<Scene> scenes = {CrystalBall(), EverythingScene(7)};
+  // The same without one thing after the other.
+  for (int without = 0; without < 5; ++without) {
+    Scene scene = EverythingScene(8);
+    for (Material& material : scene.materials) {
+      if (without == 0) material.transmit = Colour(0.0);
+      if (without == 1) material.reflect = material.transmit = Colour(0.0);
+      if (without == 2) material.ks = 0;
+      if (without == 3) material.kd = material.ks = 0;
+      if (without == 4) material.base_colour = Colour(0.5);
+    }
+    scenes.push_back(scene);
+  }
+  for (const Scene& scene : scenes) {
+    RenderOptions options;
+    options.width = 80;
+    options.height = 60;
+    options.samples = 2;
+    ForEachTarget([&](const std::string&) {
+      options.skips = Skips::kOn;
+      RenderStats on, off;
+      const Film film = RenderOrFail(scene, scene.cameras[0], options, &on);
+      options.skips = Skips::kOff;
+      CHECK(PixelsThatDiffer(film, RenderOrFail(scene, scene.cameras[0], options, &off)) == 0);
+      CHECK(on.rays.shadow <= off.rays.shadow);
+      CHECK(on.rays.reflected == off.rays.reflected);
+    });
+  }
+}
+
+TEST_CASE("a least weight drops rays, and never more light than it says") {
+  const Scene scene = GlassAndMirrors();
+  RenderOptions options;
+  options.width = 64;
+  options.height = 48;
+  options.max_depth = 7;
+  RenderStats all, some;
+  const Film exact = RenderOrFail(scene, scene.cameras[0], options, &all);
+  options.min_weight = 0.02;
+  const Film film = RenderOrFail(scene, scene.cameras[0], options, &some);
+  CheckSameBits(scene, scene.cameras[0], options);
+  CHECK(some.rays.traced() < all.rays.traced() * 9 / 10);
+  double largest = 0;
+  for (std::size_t i = 0; i < film.rgb.size(); ++i) {
+    largest = std::max(largest, std::abs(double{film.rgb[i]} - double{exact.rgb[i]}));
+  }
+  CHECK(largest > 0);
+  CHECK(largest < 0.1);
+}
+
 // Two glasses and a mirror side by side, so that rays of one pixel leave different materials at one
 // depth: the order in which their children are added is then not that of the materials.
 Scene GlassAndMirrors() {

@@ -117,7 +117,8 @@ MaterialData<Real> RandomMaterial(Random& random) {
   m.kind = random() % 2 ? BaseColour::kChecker : BaseColour::kConstant;
   const bool transmits = random() % 2, reflects = random() % 2;
   for (int i = 0; i < 3; ++i) {
-    m.even[i] = real(0, 1), m.odd[i] = real(0, 1), m.ambient[i] = real(0, 0.5);
+    m.even[i] = real(0, 1), m.ambient[i] = real(0, 0.5);
+    m.odd[i] = m.kind == BaseColour::kChecker ? real(0, 1) : m.even[i];
     m.reflect[i] = reflects ? real(0, 1) : Real(0);
     m.transmit[i] = transmits ? real(0, 1) : Real(0);
   }
@@ -128,6 +129,7 @@ MaterialData<Real> RandomMaterial(Random& random) {
   m.shininess = shininess[random() % 6];
   const Real ior[] = {1, 1.5, Real(0.7), 2.4f};
   m.ior = ior[random() % 4];
+  m.needs = random() % 2 ? NeedsOf(m) : kNeedsAll;
   return m;
 }
 
@@ -213,10 +215,10 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
         }
         const HitBatch batch{ray.data(), local.data(), primitive.data(), count};
         if (shape == Shape::kSphere) {
-          simd::SphereSurfaces(geometry.spheres, rays.view(), hits.view(), batch,
+          simd::SphereSurfaces(geometry.spheres, rays.view(), hits.view(), batch, kNeedsAll,
                                surfaces.output());
         } else {
-          simd::TriangleSurfaces(geometry.triangles, rays.view(), hits.view(), batch,
+          simd::TriangleSurfaces(geometry.triangles, rays.view(), hits.view(), batch, kNeedsAll,
                                  surfaces.output());
         }
         const auto got = surfaces.view();
@@ -328,8 +330,9 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
       }
       auto view = parents.view();
       if (round % 2) view.weight_r = view.weight_g = view.weight_b = nullptr;
+      const Real min_weight = round % 3 ? Real(0) : Real(0.25);
       const simd::SpawnCounts counts =
-          simd::SpawnRays(material, stream.view(), count, view, reflected.output(),
+          simd::SpawnRays(material, stream.view(), count, view, min_weight, reflected.output(),
                           reflected_paths.output(), refracted.output(), refracted_paths.output());
 
       std::vector<scalar::Path<Real>> want_reflected, want_refracted;
@@ -339,11 +342,11 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
         if (round % 2 == 0)
           weight[0] = view.weight_r[i], weight[1] = view.weight_g[i], weight[2] = 0;
         const auto spawned = scalar::Spawn(material, surfaces[i], weight);
-        if (spawned.reflected.exists()) {
+        if (spawned.reflected.counts(min_weight)) {
           want_reflected.push_back(spawned.reflected);
           parent_of_reflected.push_back(i);
         }
-        if (spawned.refracted.exists()) {
+        if (spawned.refracted.counts(min_weight)) {
           want_refracted.push_back(spawned.refracted);
           parent_of_refracted.push_back(i);
         }

@@ -330,7 +330,7 @@ TEST_CASE("mirror law, Snell's law, energy and sides, for random directions") {
     REQUIRE(spawned.reflected.weight[0] <= 1);
     REQUIRE(spawned.reflected.weight[0] + spawned.refracted.weight[0] ==
             doctest::Approx(1).epsilon(1e-6));
-    if (!spawned.refracted.exists()) {
+    if (!spawned.refracted.counts()) {
       ++totals;
       REQUIRE(spawned.reflected.weight[0] == 1);
       continue;
@@ -357,11 +357,11 @@ TEST_CASE("a refracted ray turned round comes back, with the same reflectance") 
     const bool is_inside = i % 2;
     const MaterialData<float> glass = Glass(static_cast<float>(Uniform(random, 0.6, 2.5)));
     const auto there = scalar::Spawn(glass, Interface(n, d, is_inside), kFull);
-    if (!there.refracted.exists()) continue;
+    if (!there.refracted.counts()) continue;
     const Vec3<double> t = there.refracted.ray.direction.To<double>();
     if (scalar::Dot(n, t) > -0.1) continue;
     const auto back = scalar::Spawn(glass, Interface(-n, -t, !is_inside), kFull);
-    REQUIRE(back.refracted.exists());
+    REQUIRE(back.refracted.counts());
     REQUIRE(Length(back.refracted.ray.direction.To<double>() + d) < 1e-5);
     REQUIRE(std::abs(back.reflected.weight[0] - there.reflected.weight[0]) < 1e-4);
     ++reversed;
@@ -374,7 +374,7 @@ TEST_CASE("ior 1 lets everything through unbent") {
   for (int i = 0; i < 20000; ++i) {
     const Vec3<double> n = RandomUnit(random), d = -RandomAbout(random, n);
     const auto spawned = scalar::Spawn(Glass(1), Interface(n, d, i % 2), kFull);
-    REQUIRE_FALSE(spawned.reflected.exists());
+    REQUIRE_FALSE(spawned.reflected.counts());
     REQUIRE(spawned.refracted.weight[0] == 1);
     REQUIRE(Length(spawned.refracted.ray.direction.To<double>() - d) < 2e-7);
   }

@@ -21,7 +21,8 @@ TreeView<Real> Tree<Real>::view() const {
           triangle_id.data(),
           sphere_id.data(),
           {lower[0], lower[1], lower[2]},
-          {upper[0], upper[1], upper[2]}};
+          {upper[0], upper[1], upper[2]},
+          node_count <= 1};
 }
 
 template <typename Real>

@@ -133,6 +133,7 @@ MaterialData<Real> CompileMaterial(const Material& material, const Settings& set
   Store(material.reflect, data.reflect);
   Store(material.transmit, data.transmit);
   data.ior = static_cast<Real>(material.ior);
+  data.needs = NeedsOf(data);
   return data;
 }
 

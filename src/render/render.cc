@@ -94,7 +94,10 @@ template <typename Real>
 Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect& area,
                       const RenderOptions& options, RenderStats& stats, RenderProgress& progress) {
   Clock::time_point start = Clock::now();
-  const CompiledScene<Real> compiled = CompileScene<Real>(scene);
+  CompiledScene<Real> compiled = CompileScene<Real>(scene);
+  if (options.skips == Skips::kOff) {
+    for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
+  }
   const Result<Tree<Real>> tree = BuildTree<Real>(compiled.geometry(), options.threads);
   if (!tree) return Error{ErrorKind::kScene, tree.error().message};
   std::vector<Real> sample_x, sample_y;
@@ -111,7 +114,9 @@ Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect&
                         sample_y,
                         CompileCamera<Real>(camera, options.width, options.height),
                         {compiled.background[0], compiled.background[1], compiled.background[2]},
-                        options.max_depth};
+                        options.max_depth,
+                        static_cast<Real>(options.min_weight)};
+  if (options.skips == Skips::kOff) frame.tree.skips_boxes = frame.tree.node_count == 0;
   stats.compile_seconds = SecondsSince(start);
   stats.spheres = compiled.sphere_count;
   stats.triangles = compiled.triangle_count;
@@ -142,6 +147,7 @@ std::string Complaint(const RenderOptions& options) {
     return out_of_range("tile size", 1, kMaxTileSize);
   if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
   if (!within(options.max_depth, 0, kMaxDepth)) return out_of_range("max depth", 0, kMaxDepth);
+  if (!(options.min_weight >= 0 && options.min_weight <= 1)) return "min weight must lie in [0, 1]";
   if (options.crop) {
     const PixelRect& crop = *options.crop;
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > options.width || crop.y1 > options.height ||

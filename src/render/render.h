@@ -27,6 +27,9 @@ enum class Engine {
 
 enum class Timing { kOff, kOn };
 
+// Whether work that a scene does not need is left out. It changes no bit; tests see to that.
+enum class Skips { kOn, kOff };
+
 inline constexpr int kMaxTileSize = 256;
 inline constexpr int kMaxThreads = 1024;
 
@@ -34,11 +37,15 @@ struct RenderOptions {
   int width = 640, height = 480;  // of the whole picture, [1, kMaxImageSide]
   int samples = 1;                // a pixel, >= 1
   int max_depth = 5;              // [0, kMaxDepth]
+  // A secondary ray that adds at most this part of what it sees is not traced, [0, 1]. Above 0 it
+  // trades accuracy for time (docs/numerics.md).
+  double min_weight = 0;
   std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
   Engine engine = Engine::kSimd;
   Precision precision = Precision::kStrict;
   int threads = 0;     // 0: one a core
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
+  Skips skips = Skips::kOn;
   Timing timing = Timing::kOff;  // whether RenderStats::phase_seconds is filled
 };
 

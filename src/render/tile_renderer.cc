@@ -13,7 +13,6 @@
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
 #include "simd/triangle_surface.h"
-#include "src/scalar/spawn.h"
 
 namespace sheaf {
 namespace {
@@ -97,17 +96,17 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
   const MaterialData<Real>& material = frame_.materials[bin.material];
   auto rays = bundle.rays.view();
   if (bin.shape == ShapeKind::kSphere) {
-    simd::SphereSurfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch,
+    simd::SphereSurfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch, material.needs,
                          surfaces_.output());
   } else {
-    simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch,
+    simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
                            surfaces_.output());
   }
   Charge(Phase::kSurface);
 
   simd::ShadeAmbient(material, surfaces_.view(), bin.batch.count, surface_colours_.output());
   Charge(Phase::kShade);
-  if (scalar::ReactsToLight(material)) ShadeLights(material, bin.batch.count);
+  if (material.needs & kNeedsLights) ShadeLights(material, bin.batch.count);
 
   auto colours = depth == 0 ? sample_.output() : ray_colours_.output();
   const auto shaded = surface_colours_.view();
@@ -118,7 +117,7 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
     colours.b[ray] = shaded.b[i];
   }
   Charge(Phase::kAccumulate);
-  if (scalar::SpawnsRays(material)) Spawn(bundle, material, bin.batch.count, depth);
+  if (material.needs & kNeedsChildren) Spawn(bundle, material, bin.batch.count, depth);
 }
 
 // Light by light, so that the shadow rays of a batch share their origin.
@@ -155,7 +154,7 @@ void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData
   auto parents = bundle.paths.view();
   if (depth == 0) parents.weight_r = parents.weight_g = parents.weight_b = nullptr;
   const simd::SpawnCounts spawned =
-      simd::SpawnRays(material, surfaces_.view(), count, parents,
+      simd::SpawnRays(material, surfaces_.view(), count, parents, frame_.min_weight,
                       next_reflected_.rays.output(next_reflected_.count),
                       next_reflected_.paths.output(next_reflected_.count),
                       next_refracted_.rays.output(next_refracted_.count),

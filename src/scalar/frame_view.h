@@ -27,6 +27,7 @@ struct FrameView {
   CameraData<Real> camera;
   Real background[3];
   int max_depth;
+  Real min_weight;  // secondary rays of no more are not traced; 0: of none
 };
 
 }  // namespace sheaf

@@ -82,8 +82,10 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
       if (!SpawnsRays(material)) continue;
       const Spawned<Real> spawned = Spawn(material, surface, path.weight);
-      if (spawned.reflected.exists()) scratch.reflected.push_back(spawned.reflected);
-      if (spawned.refracted.exists()) scratch.refracted.push_back(spawned.refracted);
+      if (spawned.reflected.counts(frame.min_weight))
+        scratch.reflected.push_back(spawned.reflected);
+      if (spawned.refracted.counts(frame.min_weight))
+        scratch.refracted.push_back(spawned.refracted);
     }
     tally.reflected += scratch.reflected.size();
     tally.refracted += scratch.refracted.size();

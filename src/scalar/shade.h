@@ -10,11 +10,6 @@
 
 namespace sheaf::scalar {
 
-template <typename Real>
-bool AnyPositive(const Real (&c)[3]) {
-  return c[0] > 0 || c[1] > 0 || c[2] > 0;
-}
-
 // A transparent body has no light of its own inside.
 template <typename Real>
 bool HasLocalLight(const MaterialData<Real>& material, const Surface<Real>& surface) {

@@ -37,13 +37,17 @@ Split<Real> FresnelSplit(Real eta, Real cos_i) {
   return {static_cast<Real>((s * s + p * p) / 2), static_cast<Real>(cos_t), false};
 }
 
-// A ray and its throughput; nothing is traced where no component of the weight is positive.
+// A ray and its throughput.
 template <typename Real>
 struct Path {
   Ray<Real> ray;
   Real weight[3];
 
-  bool exists() const { return AnyPositive(weight); }
+  // Whether it is traced: not where all it could add is weighed by `min_weight` or less (Hall and
+  // Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds nothing.
+  bool counts(Real min_weight = 0) const {
+    return weight[0] > min_weight || weight[1] > min_weight || weight[2] > min_weight;
+  }
 };
 
 template <typename Real>
