@@ -223,6 +223,8 @@ void CheckSameBits(const Scene& scene, const Camera& camera, RenderOptions optio
         const Film film = RenderOrFail(scene, camera, options, &stats);
         CHECK(PixelsThatDiffer(film, scalar) == 0);
         CHECK(stats.target == name);
+        // A tile's neighbours are sampled with it: their rays depend on the tiles.
+        if (options.contrast) continue;
         CHECK(stats.rays.shadow == scalar_stats.rays.shadow);
         CHECK(stats.rays.reflected == scalar_stats.rays.reflected);
         CHECK(stats.rays.refracted == scalar_stats.rays.refracted);
@@ -336,6 +338,43 @@ TEST_CASE("a least weight drops rays, and never more light than it says") {
   }
   CHECK(largest > 0);
   CHECK(largest < 0.1);
+}
+
+double RootMeanSquare(const Film& a, const Film& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const double difference = double{a.rgb[i]} - double{b.rgb[i]};
+    sum += difference * difference;
+  }
+  return std::sqrt(sum / static_cast<double>(a.rgb.size()));
+}
+
+TEST_CASE("adaptive sampling has the same bits on every target") {
+  RenderOptions options;
+  options.width = 90;
+  options.height = 70;
+  options.samples = 4;
+  for (const double contrast : {0.0, 0.1, 1.0}) {
+    options.contrast = contrast;
+    CheckSameBits(CrystalBall(), CrystalBall().cameras[0], options);
+    const Scene scene = EverythingScene(5);
+    for (const Camera& camera : scene.cameras) CheckSameBits(scene, camera, options);
+  }
+}
+
+TEST_CASE("adaptive sampling spends its rays at edges") {
+  const Scene scene = CrystalBall();
+  RenderOptions options;
+  options.width = 160;
+  options.height = 120;
+  const Film single = RenderOrFail(scene, scene.cameras[0], options);
+  options.samples = 16;
+  RenderStats full_stats, stats;
+  const Film full = RenderOrFail(scene, scene.cameras[0], options, &full_stats);
+  options.contrast = 0.05;
+  const Film film = RenderOrFail(scene, scene.cameras[0], options, &stats);
+  CHECK(stats.rays.traced() < full_stats.rays.traced() / 2);
+  CHECK(RootMeanSquare(film, full) < RootMeanSquare(single, full) / 2);
 }
 
 // Two glasses and a mirror side by side, so that rays of one pixel leave different materials at one

@@ -6,12 +6,26 @@
 
 namespace sheaf {
 
-std::optional<int> ParseInteger(std::string_view text, int min, int max) {
-  int value = 0;
+namespace {
+
+// All of `text`, within [min, max], which NaN is not.
+template <typename T>
+std::optional<T> ParseWithin(std::string_view text, T min, T max) {
+  T value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (value < min || value > max) return std::nullopt;
+  if (!(value >= min && value <= max)) return std::nullopt;
   return value;
+}
+
+}  // namespace
+
+std::optional<int> ParseInteger(std::string_view text, int min, int max) {
+  return ParseWithin(text, min, max);
+}
+
+std::optional<double> ParseNumber(std::string_view text, double min, double max) {
+  return ParseWithin(text, min, max);
 }
 
 std::optional<PixelSize> ParseSize(std::string_view text) {

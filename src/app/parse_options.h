@@ -18,6 +18,9 @@ struct PixelSize {
 // Decimal, within [min, max].
 std::optional<int> ParseInteger(std::string_view text, int min, int max);
 
+// Decimal, with or without an exponent, within [min, max]; not NaN.
+std::optional<double> ParseNumber(std::string_view text, double min, double max);
+
 // "640x480", each side in [1, kMaxImageSide].
 std::optional<PixelSize> ParseSize(std::string_view text);
 

@@ -60,6 +60,13 @@ void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int 
             [min, max](const std::string& text) { return ParseInteger(text, min, max); });
 }
 
+// A part of white or of a weight.
+void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
+              const char* placeholder, const char* description) {
+  AddParsed(app, name, value, placeholder, "a number 0 to 1", description,
+            [](const std::string& text) { return ParseNumber(text, 0, 1); });
+}
+
 // Names without a blank or a double among them.
 std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
   std::vector<std::string> names = SplitAtCommas(text);
@@ -212,6 +219,8 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.height = size.height;
   options.samples = request.samples.value_or(settings.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
+  options.contrast = request.contrast;
+  options.min_weight = request.min_weight.value_or(0);
   options.crop = request.crop;
   options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
   options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
@@ -281,6 +290,10 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddInteger(*render, "--max-depth", request.max_depth, 0, kMaxDepth,
              "A ray deeper than this is black; primary rays have depth 0");
+  AddShare(*render, "--adaptive", request.contrast, "T",
+           "All samples only where neighbours differ by more than T; else one");
+  AddShare(*render, "--min-weight", request.min_weight, "W",
+           "Rays that add at most this part of what they see are not traced");
   AddParsed(*render, "--crop", request.crop, "x0,y0,x1,y1",
             "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",
             "Render this part alone; x1 and y1 are exclusive", &ParseRect);

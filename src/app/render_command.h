@@ -24,6 +24,7 @@ struct RenderRequest {
   std::string output;
   std::optional<PixelSize> size;
   std::optional<int> samples, max_depth;
+  std::optional<double> contrast, min_weight;
   std::string target = "auto";
   std::string precision = "strict";
   std::optional<int> threads, tile_size;

@@ -47,6 +47,8 @@ Json FrameJson(const FrameRecord& frame) {
       {"seconds", SecondsJson(frame)},
       {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
   };
+  if (options.contrast) json["adaptive"] = *options.contrast;
+  if (options.min_weight > 0) json["min_weight"] = options.min_weight;
   if (options.crop) {
     json["crop"] = {options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1};
   }

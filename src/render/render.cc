@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@
 #include "src/render/compile_scene.h"
 #include "src/render/sample_pattern.h"
 #include "src/render/tile_renderer.h"
-#include "src/scalar/render_pixel.h"
+#include "src/scalar/render_adaptively.h"
 
 namespace sheaf {
 namespace {
@@ -33,13 +34,19 @@ class ScalarTileRenderer {
       : frame_(frame), stop_(stop) {}
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
+    const auto write = [&](int x, int y, const scalar::Vec3<Real>& colour) {
+      float* rgb = film.pixel(x - film_x, y - film_y);
+      rgb[0] = static_cast<float>(colour.x);
+      rgb[1] = static_cast<float>(colour.y);
+      rgb[2] = static_cast<float>(colour.z);
+    };
+    if (frame_.is_adaptive()) {
+      scalar::RenderAdaptively(frame_, tile, scratch_, tally_, stop_, write);
+      return;
+    }
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1 && !stop_.load(std::memory_order_relaxed); ++x) {
-        const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_);
-        float* rgb = film.pixel(x - film_x, y - film_y);
-        rgb[0] = static_cast<float>(colour.x);
-        rgb[1] = static_cast<float>(colour.y);
-        rgb[2] = static_cast<float>(colour.z);
+        write(x, y, scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_));
       }
     }
   }
@@ -115,6 +122,9 @@ Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect&
                         CompileCamera<Real>(camera, options.width, options.height),
                         {compiled.background[0], compiled.background[1], compiled.background[2]},
                         options.max_depth,
+                        options.width,
+                        options.height,
+                        static_cast<Real>(options.contrast.value_or(std::nan(""))),
                         static_cast<Real>(options.min_weight)};
   if (options.skips == Skips::kOff) frame.tree.skips_boxes = frame.tree.node_count == 0;
   stats.compile_seconds = SecondsSince(start);
@@ -148,6 +158,9 @@ std::string Complaint(const RenderOptions& options) {
   if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
   if (!within(options.max_depth, 0, kMaxDepth)) return out_of_range("max depth", 0, kMaxDepth);
   if (!(options.min_weight >= 0 && options.min_weight <= 1)) return "min weight must lie in [0, 1]";
+  if (options.contrast && !(*options.contrast >= 0 && *options.contrast <= 1)) {
+    return "contrast must lie in [0, 1]";
+  }
   if (options.crop) {
     const PixelRect& crop = *options.crop;
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > options.width || crop.y1 > options.height ||

@@ -40,6 +40,9 @@ struct RenderOptions {
   // A secondary ray that adds at most this part of what it sees is not traced, [0, 1]. Above 0 it
   // trades accuracy for time (docs/numerics.md).
   double min_weight = 0;
+  // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
+  // colours that differ by more than this are one, [0, 1].
+  std::optional<double> contrast;
   std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
   Engine engine = Engine::kSimd;
   Precision precision = Precision::kStrict;

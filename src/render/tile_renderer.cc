@@ -13,6 +13,7 @@
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
 #include "simd/triangle_surface.h"
+#include "src/scalar/render_adaptively.h"
 
 namespace sheaf {
 namespace {
@@ -24,25 +25,50 @@ std::uint32_t EvenBits(std::uint32_t code) {
   return value;
 }
 
+template <typename Real>
+bool Contains(const PixelRect& rect, Real x, Real y) {
+  return x >= static_cast<Real>(rect.x0) && x < static_cast<Real>(rect.x1) &&
+         y >= static_cast<Real>(rect.y0) && y < static_cast<Real>(rect.y1);
+}
+
 }  // namespace
 
 // ---- The schedule ----
 
 template <typename Real>
 void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
-  OrderPixels(tile);
-  const std::size_t samples = frame_.sample_x.size();
-  for (std::size_t i = 0; i < samples && !stop_.load(std::memory_order_relaxed); ++i) {
-    RenderSample(frame_.sample_x[i], frame_.sample_y[i]);
-    if (samples > 1) AddSample(i);
+  if (frame_.is_adaptive()) {
+    RenderAdaptively(tile);
+  } else {
+    OrderPixels(tile);
+    const std::size_t samples = frame_.sample_x.size();
+    for (std::size_t i = 0; i < samples && !stop_.load(std::memory_order_relaxed); ++i) {
+      RenderSample(pixels_, i);
+      if (samples > 1) AddSample(i);
+    }
   }
-  WritePixels(samples, film_x, film_y, film);
+  WritePixels(tile, film_x, film_y, film);
+}
+
+// src/scalar/render_adaptively.h: one sample of every pixel, the others where there are edges.
+template <typename Real>
+void TileRenderer<Real>::RenderAdaptively(const PixelRect& tile) {
+  OrderPixels(scalar::WithNeighbours(frame_, tile));
+  records_first_hits_ = true;
+  RenderSample(pixels_, 0);
+  records_first_hits_ = false;
+  FindEdges(tile);
+  for (std::size_t i = 1; i < frame_.sample_x.size(); ++i) {
+    if (edges_.count == 0 || stop_.load(std::memory_order_relaxed)) return;
+    RenderSample(edges_, i);
+    AddSampleOfEdges(i);
+  }
 }
 
 template <typename Real>
-void TileRenderer<Real>::RenderSample(Real sample_x, Real sample_y) {
+void TileRenderer<Real>::RenderSample(const PixelList& pixels, std::size_t sample) {
   StartClock();
-  Generate(sample_x, sample_y);
+  Generate(pixels, sample);
   next_reflected_.Reset(primary_.count);
   next_refracted_.Reset(primary_.count);
   TraceAndShade(primary_, 0);
@@ -102,6 +128,7 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
     simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
                            surfaces_.output());
   }
+  if (records_first_hits_ && depth == 0) RecordFirstHits(bin);
   Charge(Phase::kSurface);
 
   simd::ShadeAmbient(material, surfaces_.view(), bin.batch.count, surface_colours_.output());
@@ -196,29 +223,94 @@ void TileRenderer<Real>::Accumulate(const RayBundle<Real>& bundle) {
   Charge(Phase::kAccumulate);
 }
 
+// The first of several samples sets the mean, which is a sum until the last divides it.
 template <typename Real>
 void TileRenderer<Real>::AddSample(std::size_t index) {
-  auto pixels = pixels_.output();
+  const std::size_t samples = frame_.sample_x.size();
+  auto mean = mean_.output();
   auto sample = sample_.view();
-  ForEachField(pixels, sample, [&](Real* sum, const Real* channel) {
-    if (index == 0) std::fill_n(sum, pixel_count_, Real(0));
-    for (std::uint32_t i = 0; i < pixel_count_; ++i) sum[i] += channel[i];
+  ForEachField(mean, sample, [&](Real* sum, const Real* channel) {
+    if (index == 0) std::fill_n(sum, pixels_.count, Real(0));
+    for (std::uint32_t i = 0; i < pixels_.count; ++i) sum[i] += channel[i];
+    if (index + 1 < samples) return;
+    for (std::uint32_t i = 0; i < pixels_.count; ++i) sum[i] /= static_cast<Real>(samples);
   });
   Charge(Phase::kAccumulate);
 }
 
-// The only sample of a pixel is its mean already.
 template <typename Real>
-void TileRenderer<Real>::WritePixels(std::size_t samples, int film_x, int film_y, Film& film) {
-  const auto mean = samples > 1 ? pixels_.output() : sample_.output();
-  if (samples > 1) {
-    ForEachField(mean, [&](Real* channel) {
-      for (std::uint32_t i = 0; i < pixel_count_; ++i) channel[i] /= static_cast<Real>(samples);
-    });
+void TileRenderer<Real>::AddSampleOfEdges(std::size_t index) {
+  const std::size_t samples = frame_.sample_x.size();
+  auto mean = mean_.output();
+  auto sample = sample_.view();
+  ForEachField(mean, sample, [&](Real* sum, const Real* channel) {
+    for (std::uint32_t i = 0; i < edges_.count; ++i) {
+      Real& pixel = sum[position_of_edge_[i]];
+      pixel += channel[i];
+      if (index + 1 == samples) pixel /= static_cast<Real>(samples);
+    }
+  });
+  Charge(Phase::kAccumulate);
+}
+
+// The first samples become the means; pixels of `tile` with an edge to a neighbour become edges_.
+template <typename Real>
+void TileRenderer<Real>::FindEdges(const PixelRect& tile) {
+  AddSample(0);
+  const auto sample = sample_.view();
+  const int width = ordered_.width();
+  pixel_at_.resize(static_cast<std::size_t>(width * ordered_.height()));
+  const auto at = [&](int x, int y) -> std::uint32_t& {
+    return pixel_at_[static_cast<std::size_t>((y - ordered_.y0) * width + (x - ordered_.x0))];
+  };
+  for (std::uint32_t i = 0; i < pixels_.count; ++i) {
+    first_hits_[i].colour = {sample.r[i], sample.g[i], sample.b[i]};
+    at(static_cast<int>(pixels_.x[i]), static_cast<int>(pixels_.y[i])) = i;
   }
-  for (std::uint32_t i = 0; i < pixel_count_; ++i) {
-    float* rgb =
-        film.pixel(static_cast<int>(pixel_x_[i]) - film_x, static_cast<int>(pixel_y_[i]) - film_y);
+  // Each pair once, from its left or upper pixel.
+  is_edge_.assign(pixels_.count, false);
+  const auto judge = [&](std::uint32_t a, std::uint32_t b) {
+    if (is_edge_[a] && is_edge_[b]) return;
+    if (!scalar::HasEdgeBetween(first_hits_[a], first_hits_[b], frame_.contrast)) return;
+    is_edge_[a] = is_edge_[b] = true;
+  };
+  for (int y = ordered_.y0; y < ordered_.y1; ++y) {
+    for (int x = ordered_.x0; x < ordered_.x1; ++x) {
+      if (x + 1 < ordered_.x1) judge(at(x, y), at(x + 1, y));
+      if (y + 1 < ordered_.y1) judge(at(x, y), at(x, y + 1));
+    }
+  }
+  edges_.Reserve(pixels_.count);
+  edges_.count = 0;
+  position_of_edge_.clear();
+  for (std::uint32_t i = 0; i < pixels_.count; ++i) {
+    if (!is_edge_[i] || !Contains(tile, pixels_.x[i], pixels_.y[i])) continue;
+    edges_.x[edges_.count] = pixels_.x[i];
+    edges_.y[edges_.count++] = pixels_.y[i];
+    position_of_edge_.push_back(i);
+  }
+  Charge(Phase::kAccumulate);
+}
+
+template <typename Real>
+void TileRenderer<Real>::RecordFirstHits(const HitBin& bin) {
+  const auto surfaces = surfaces_.view();
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
+    const std::uint32_t primitive = bin.batch.primitive[i];
+    scalar::FirstHit<Real>& first = first_hits_[bin.batch.ray[i]];
+    first.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
+    first.surface = scalar::SurfaceIdOf(primitive, frame_.primitives[primitive]);
+  }
+}
+
+// Those of `tile`: with neighbours there are more.
+template <typename Real>
+void TileRenderer<Real>::WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film) {
+  const auto mean = frame_.sample_x.size() > 1 ? mean_.view() : sample_.view();
+  for (std::uint32_t i = 0; i < pixels_.count; ++i) {
+    if (!Contains(tile, pixels_.x[i], pixels_.y[i])) continue;
+    float* rgb = film.pixel(static_cast<int>(pixels_.x[i]) - film_x,
+                            static_cast<int>(pixels_.y[i]) - film_y);
     rgb[0] = static_cast<float>(mean.r[i]);
     rgb[1] = static_cast<float>(mean.g[i]);
     rgb[2] = static_cast<float>(mean.b[i]);
@@ -232,19 +324,19 @@ void TileRenderer<Real>::WritePixels(std::size_t samples, int film_x, int film_y
 template <typename Real>
 void TileRenderer<Real>::OrderPixels(const PixelRect& tile) {
   const std::uint32_t size = static_cast<std::uint32_t>(tile.width() * tile.height());
-  if (pixel_x_.size() < StreamCapacity(size)) {
-    pixel_x_.Allocate(StreamCapacity(size));
-    pixel_y_.Allocate(StreamCapacity(size));
+  if (size > pixels_.capacity()) {
+    pixels_.Reserve(size);
     sample_.Allocate(size);
-    pixels_.Allocate(size);
+    mean_.Allocate(size);
+    ordered_ = {};
   }
   if (tile.width() == ordered_.width() && tile.height() == ordered_.height()) {
     // The shape of the last tile: only moved.
     const Real right = static_cast<Real>(tile.x0 - ordered_.x0);
     const Real down = static_cast<Real>(tile.y0 - ordered_.y0);
-    for (std::uint32_t i = 0; i < pixel_count_; ++i) {
-      pixel_x_[i] += right;
-      pixel_y_[i] += down;
+    for (std::uint32_t i = 0; i < pixels_.count; ++i) {
+      pixels_.x[i] += right;
+      pixels_.y[i] += down;
     }
     ordered_ = tile;
     return;
@@ -252,23 +344,24 @@ void TileRenderer<Real>::OrderPixels(const PixelRect& tile) {
   ordered_ = tile;
   const auto side =
       std::bit_ceil(static_cast<std::uint32_t>(std::max(tile.width(), tile.height())));
-  pixel_count_ = 0;
+  pixels_.count = 0;
   for (std::uint32_t code = 0; code < side * side; ++code) {
     const int x = static_cast<int>(EvenBits(code)), y = static_cast<int>(EvenBits(code >> 1));
     if (x >= tile.width() || y >= tile.height()) continue;
-    pixel_x_[pixel_count_] = static_cast<Real>(tile.x0 + x);
-    pixel_y_[pixel_count_] = static_cast<Real>(tile.y0 + y);
-    ++pixel_count_;
+    pixels_.x[pixels_.count] = static_cast<Real>(tile.x0 + x);
+    pixels_.y[pixels_.count] = static_cast<Real>(tile.y0 + y);
+    ++pixels_.count;
   }
 }
 
 template <typename Real>
-void TileRenderer<Real>::Generate(Real sample_x, Real sample_y) {
-  primary_.Reset(pixel_count_);
-  primary_.count = pixel_count_;
-  simd::GeneratePrimary(frame_.camera, pixel_x_.data(), pixel_y_.data(), sample_x, sample_y,
-                        pixel_count_, primary_.rays.output());
-  rays_.primary += pixel_count_;
+void TileRenderer<Real>::Generate(const PixelList& pixels, std::size_t sample) {
+  primary_.Reset(pixels.count);
+  primary_.count = pixels.count;
+  simd::GeneratePrimary(frame_.camera, pixels.x.data(), pixels.y.data(), frame_.sample_x[sample],
+                        frame_.sample_y[sample], pixels.count, primary_.rays.output());
+  rays_.primary += pixels.count;
+  if (records_first_hits_) first_hits_.assign(pixels.count, {});
   Charge(Phase::kGenerate);
 }
 

@@ -9,6 +9,7 @@
 #include "src/render/bin_hits.h"
 #include "src/render/ray_bundle.h"
 #include "src/render/render.h"
+#include "src/scalar/first_hit.h"
 #include "src/scalar/frame_view.h"
 #include "src/stream/stream.h"
 
@@ -32,9 +33,28 @@ class TileRenderer {
  private:
   using Clock = std::chrono::steady_clock;
 
+  // Pixels whose samples are traced together.
+  struct PixelList {
+    AlignedArray<Real> x, y;  // of each pixel's corner, whole numbers
+    std::uint32_t count = 0;
+
+    std::uint32_t capacity() const { return capacity_; }
+    void Reserve(std::uint32_t n) {
+      if (n <= capacity_) return;
+      capacity_ = n;
+      x.Allocate(StreamCapacity(n));
+      y.Allocate(StreamCapacity(n));
+    }
+
+   private:
+    std::uint32_t capacity_ = 0;
+  };
+
+  void RenderAdaptively(const PixelRect& tile);
+  void FindEdges(const PixelRect& tile);
   void OrderPixels(const PixelRect& tile);
-  void RenderSample(Real sample_x, Real sample_y);
-  void Generate(Real sample_x, Real sample_y);
+  void RenderSample(const PixelList& pixels, std::size_t sample);
+  void Generate(const PixelList& pixels, std::size_t sample);
   void TraceAndShade(const RayBundle<Real>& bundle, int depth);
   void ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth);
   void ShadeLights(const MaterialData<Real>& material, std::uint32_t count);
@@ -45,7 +65,9 @@ class TileRenderer {
                    int depth, int spawning_bins);
   void Accumulate(const RayBundle<Real>& bundle);
   void AddSample(std::size_t index);
-  void WritePixels(std::size_t samples, int film_x, int film_y, Film& film);
+  void AddSampleOfEdges(std::size_t index);
+  void RecordFirstHits(const HitBin& bin);
+  void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
   void Reserve(std::uint32_t count);
   void StartClock();
   void Charge(Phase phase);
@@ -58,10 +80,16 @@ class TileRenderer {
   double seconds_[static_cast<int>(Phase::kCount)] = {};
   Clock::time_point clock_;
 
-  std::uint32_t pixel_count_ = 0;
-  PixelRect ordered_;  // the tile that pixel_x_ and pixel_y_ are for
-  AlignedArray<Real> pixel_x_, pixel_y_;
-  ColourStream<Real> sample_, pixels_;  // by pixel of the tile
+  PixelRect ordered_;          // the tile that pixels_ are of
+  PixelList pixels_;           // in Morton order
+  ColourStream<Real> sample_;  // of the list that is being traced
+  ColourStream<Real> mean_;    // by pixel of pixels_, where there are several samples
+  PixelList edges_;            // the pixels of pixels_ that get all samples
+  std::vector<std::uint32_t> position_of_edge_;     // in pixels_
+  std::vector<scalar::FirstHit<Real>> first_hits_;  // by pixel of pixels_
+  std::vector<std::uint32_t> pixel_at_;             // position in pixels_, by row and column
+  std::vector<bool> is_edge_;                       // by pixel of pixels_
+  bool records_first_hits_ = false;
 
   RayBundle<Real> primary_;
   // The rays of this depth and of the next; reflected before refracted wherever their order counts.

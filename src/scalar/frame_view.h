@@ -27,7 +27,13 @@ struct FrameView {
   CameraData<Real> camera;
   Real background[3];
   int max_depth;
+  int width, height;  // of the whole picture
+  // Adaptive sampling: the contrast that is an edge (src/scalar/first_hit.h); NaN: all samples
+  // everywhere.
+  Real contrast;
   Real min_weight;  // secondary rays of no more are not traced; 0: of none
+
+  bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
 };
 
 }  // namespace sheaf

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "src/scalar/camera_ray.h"
+#include "src/scalar/first_hit.h"
 #include "src/scalar/frame_view.h"
 #include "src/scalar/ray_counts.h"
 #include "src/scalar/shadow_ray.h"
@@ -59,11 +60,12 @@ void Accumulate(Vec3<Real>& sum, const Real (&weight)[3], Vec3<Real> colour) {
   sum = sum + Vec3<Real>{weight[0] * colour.x, weight[1] * colour.y, weight[2] * colour.z};
 }
 
-// The colour of one sample: breadth first from its primary ray, which has depth 0.
+// The colour of one sample: breadth first from its primary ray, which has depth 0. Leaves in
+// `first`, unless that is null, what the primary ray hit.
 template <typename Real>
 Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
                         PixelScratch<Real>& scratch, RayCounts& tally,
-                        const std::atomic<bool>& stop) {
+                        const std::atomic<bool>& stop, FirstHit<Real>* first = nullptr) {
   Vec3<Real> sum = {0, 0, 0};
   scratch.paths.assign(1, {primary, {1, 1, 1}});
   ++tally.primary;
@@ -79,6 +81,10 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];
       const Surface<Real> surface = SurfaceOf(frame, path.ray, hit);
+      if (depth == 0 && first) {
+        first->normal = surface.normal;
+        first->surface = SurfaceIdOf(hit.primitive, frame.primitives[hit.primitive]);
+      }
       Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
       if (!SpawnsRays(material)) continue;
       const Spawned<Real> spawned = Spawn(material, surface, path.weight);
