@@ -20,6 +20,21 @@ Json SecondsJson(const FrameRecord& frame) {
   return seconds;
 }
 
+// Of the phases that run kernels.
+Json LaneUseJson(const RenderStats& stats) {
+  Json phases = Json::object();
+  for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
+    const LaneUse& use = stats.lane_use[i];
+    if (use.lanes == 0) continue;
+    phases[PhaseName(static_cast<Phase>(i))] = {
+        {"batches", use.batches},
+        {"live", use.live},
+        {"lanes", use.lanes},
+        {"share", static_cast<double>(use.live) / static_cast<double>(use.lanes)}};
+  }
+  return phases;
+}
+
 Json FrameJson(const FrameRecord& frame) {
   const RenderOptions& options = frame.options;
   const RenderStats& stats = frame.stats;
@@ -47,6 +62,7 @@ Json FrameJson(const FrameRecord& frame) {
       {"seconds", SecondsJson(frame)},
       {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
   };
+  if (options.engine != Engine::kScalar) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_weight > 0) json["min_weight"] = options.min_weight;
   if (options.crop) {

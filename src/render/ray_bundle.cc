@@ -1,35 +1,44 @@
 #include "src/render/ray_bundle.h"
 
-#include <algorithm>
 #include <type_traits>
-#include <vector>
 
 namespace sheaf {
+namespace {
+
+// field[i] becomes field[order[i]].
+template <typename T>
+void Permute(T* field, const std::vector<std::uint32_t>& order, std::vector<T>& scratch) {
+  scratch.assign(field, field + order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) field[i] = scratch[order[i]];
+}
+
+}  // namespace
 
 template <typename Real>
-void OrderByParent(RayBundle<Real>& bundle, std::uint32_t first, std::uint32_t parent_count) {
+void ParentOrder<Real>::Apply(RayBundle<Real>& bundle, std::uint32_t first,
+                              std::uint32_t parent_count) {
   constexpr std::uint32_t kNone = 0xffffffffu;
-  const std::uint32_t count = bundle.count - first;
   auto paths = bundle.paths.output(first);
-  std::vector<std::uint32_t> ray_of_parent(parent_count, kNone);
-  for (std::uint32_t i = 0; i < count; ++i) ray_of_parent[paths.parent[i]] = i;
-  std::vector<std::uint32_t> order;
-  order.reserve(count);
-  for (const std::uint32_t ray : ray_of_parent) {
-    if (ray != kNone) order.push_back(ray);
+  ray_of_parent_.assign(parent_count, kNone);
+  for (std::uint32_t i = 0; i < bundle.count - first; ++i) ray_of_parent_[paths.parent[i]] = i;
+  order_.clear();
+  for (const std::uint32_t ray : ray_of_parent_) {
+    if (ray != kNone) order_.push_back(ray);
   }
 
   const auto permute = [&](auto* field) {
-    std::vector<std::remove_reference_t<decltype(*field)>> permuted(count);
-    for (std::uint32_t i = 0; i < count; ++i) permuted[i] = field[order[i]];
-    std::copy(permuted.begin(), permuted.end(), field);
+    if constexpr (std::is_same_v<decltype(field), Real*>) {
+      Permute(field, order_, numbers_);
+    } else {
+      Permute(field, order_, ids_);
+    }
   };
   auto rays = bundle.rays.output(first);
   ForEachField(rays, permute);
   ForEachField(paths, permute);
 }
 
-template void OrderByParent(RayBundle<float>&, std::uint32_t, std::uint32_t);
-template void OrderByParent(RayBundle<double>&, std::uint32_t, std::uint32_t);
+template class ParentOrder<float>;
+template class ParentOrder<double>;
 
 }  // namespace sheaf

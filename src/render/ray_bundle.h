@@ -2,6 +2,8 @@
 #ifndef SHEAF_RENDER_RAY_BUNDLE_H_
 #define SHEAF_RENDER_RAY_BUNDLE_H_
 
+#include <vector>
+
 #include "src/stream/stream.h"
 
 namespace sheaf {
@@ -27,7 +29,15 @@ struct RayBundle {
 // bounds PathFields::parent. Batches append material by material; this makes a pixel's rays
 // independent of that.
 template <typename Real>
-void OrderByParent(RayBundle<Real>& bundle, std::uint32_t first, std::uint32_t parent_count);
+class ParentOrder {
+ public:
+  void Apply(RayBundle<Real>& bundle, std::uint32_t first, std::uint32_t parent_count);
+
+ private:
+  // Kept from call to call.
+  std::vector<std::uint32_t> ray_of_parent_, order_, ids_;
+  std::vector<Real> numbers_;
+};
 
 }  // namespace sheaf
 

@@ -53,6 +53,7 @@ class ScalarTileRenderer {
 
   const RayCounts& rays() const { return tally_; }
   double phase_seconds(Phase /*phase*/) const { return 0; }
+  LaneUse lane_use(Phase /*phase*/) const { return {}; }
 
  private:
   const FrameView<Real>& frame_;
@@ -91,6 +92,7 @@ bool RenderTiles(const FrameView<Real>& frame, const PixelRect& area, const Rend
     stats.rays += worker->rays();
     for (int phase = 0; phase < static_cast<int>(Phase::kCount); ++phase) {
       stats.phase_seconds[phase] += worker->phase_seconds(static_cast<Phase>(phase));
+      stats.lane_use[phase] += worker->lane_use(static_cast<Phase>(phase));
     }
   }
   stats.threads = threads;

@@ -65,13 +65,25 @@ enum class Phase {
 };
 const char* PhaseName(Phase phase);  // lower case, e.g. "trace"
 
+// How full the vectors of a phase's kernels were: of `lanes` that ran, `live` had something to do.
+struct LaneUse {
+  std::uint64_t batches = 0, live = 0, lanes = 0;
+  LaneUse& operator+=(const LaneUse& other) {
+    batches += other.batches;
+    live += other.live;
+    lanes += other.lanes;
+    return *this;
+  }
+};
+
 struct RenderStats {
   RayCounts rays;
   double wall_seconds = 0.0;     // of the frame, without scene compilation
   double compile_seconds = 0.0;  // Scene to flat arrays
   double phase_seconds[static_cast<int>(Phase::kCount)] =
-      {};              // summed over threads; SIMD engine only
-  int threads = 0;     // that took part
+      {};                                                  // summed over threads; SIMD engine only
+  LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};  // summed over threads; SIMD engine only
+  int threads = 0;                                         // that took part
   std::string target;  // what ran: "scalar" or a SIMD target's name
   std::uint32_t primitives = 0, spheres = 0, triangles = 0;
 };

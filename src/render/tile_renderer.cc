@@ -100,7 +100,7 @@ void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth)
   auto rays = bundle.rays.view();
   if (depth == 0) rays.source = nullptr;
   simd::TraceClosest(frame_.tree, rays, {}, bundle.count, Coherence::kUnknown, hits_.output());
-  Charge(Phase::kTrace);
+  Charge(Phase::kTrace, bundle.count, bundle.count);
   binner_.Bin(hits_.view().primitive, bundle.count, frame_.primitives);
   Charge(Phase::kBin);
 
@@ -129,10 +129,10 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
                            surfaces_.output());
   }
   if (records_first_hits_ && depth == 0) RecordFirstHits(bin);
-  Charge(Phase::kSurface);
+  Charge(Phase::kSurface, bin.batch.count, bin.batch.count);
 
   simd::ShadeAmbient(material, surfaces_.view(), bin.batch.count, surface_colours_.output());
-  Charge(Phase::kShade);
+  Charge(Phase::kShade, bin.batch.count, bin.batch.count);
   if (material.needs & kNeedsLights) ShadeLights(material, bin.batch.count);
 
   auto colours = depth == 0 ? sample_.output() : ray_colours_.output();
@@ -153,17 +153,18 @@ void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material, std::ui
   for (const LightData<Real>& light : frame_.lights) {
     const std::uint32_t facing =
         simd::FaceLight(light, material, surfaces_.view(), count, lit_.data());
-    Charge(Phase::kShade);
+    Charge(Phase::kShade, count, count);
     if (facing == 0) continue;
-    if (light.casts_shadows) FindShadows(light, count);
+    const std::uint32_t lit = light.casts_shadows ? FindShadows(light, count) : facing;
+    if (lit == 0) continue;
     simd::ShadeLight(light, material, surfaces_.view(), lit_.data(), count,
                      surface_colours_.output());
-    Charge(Phase::kShade);
+    Charge(Phase::kShade, lit, count);
   }
 }
 
 template <typename Real>
-void TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t count) {
+std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t count) {
   const std::uint32_t size = simd::GenerateShadow(light, surfaces_.view(), lit_.data(), count,
                                                   shadow_rays_.output(), surface_of_ray_.data());
   rays_.shadow += size;
@@ -171,8 +172,13 @@ void TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
   simd::TraceOccluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
                       occluded_.data());
-  for (std::uint32_t i = 0; i < size; ++i) lit_[surface_of_ray_[i]] = 1 - occluded_[i];
-  Charge(Phase::kShadow);
+  std::uint32_t lit = size;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    lit_[surface_of_ray_[i]] = 1 - occluded_[i];
+    lit -= occluded_[i];
+  }
+  Charge(Phase::kShadow, size, size);
+  return lit;
 }
 
 template <typename Real>
@@ -190,7 +196,7 @@ void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData
   next_refracted_.count += spawned.refracted;
   reflecting_bins_ += spawned.reflected > 0;
   refracting_bins_ += spawned.refracted > 0;
-  Charge(Phase::kSpawn);
+  Charge(Phase::kSpawn, count, count);
 }
 
 // One bin leaves its children in the order of their parents; several have to be merged into it.
@@ -198,7 +204,7 @@ template <typename Real>
 void TileRenderer<Real>::FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children,
                                      std::uint32_t first, int depth, int spawning_bins) {
   if (children.count == first) return;
-  if (spawning_bins > 1) OrderByParent(children, first, bundle.count);
+  if (spawning_bins > 1) parent_order_.Apply(children, first, bundle.count);
   const std::uint32_t* parent_pixel = bundle.paths.view().pixel;
   const auto paths = children.paths.output(first);
   for (std::uint32_t i = 0; i < children.count - first; ++i) {
@@ -362,7 +368,7 @@ void TileRenderer<Real>::Generate(const PixelList& pixels, std::size_t sample) {
                         frame_.sample_y[sample], pixels.count, primary_.rays.output());
   rays_.primary += pixels.count;
   if (records_first_hits_) first_hits_.assign(pixels.count, {});
-  Charge(Phase::kGenerate);
+  Charge(Phase::kGenerate, pixels.count, pixels.count);
 }
 
 template <typename Real>
@@ -391,6 +397,17 @@ void TileRenderer<Real>::Charge(Phase phase) {
   const Clock::time_point now = Clock::now();
   seconds_[static_cast<int>(phase)] += std::chrono::duration<double>(now - clock_).count();
   clock_ = now;
+}
+
+// The same for a kernel that took `count` elements, whole vectors of them, of which `live`
+// mattered.
+template <typename Real>
+void TileRenderer<Real>::Charge(Phase phase, std::uint32_t live, std::uint32_t count) {
+  LaneUse& use = lane_use_[static_cast<int>(phase)];
+  ++use.batches;
+  use.live += live;
+  use.lanes += (count + lanes_ - 1) / lanes_ * lanes_;
+  Charge(phase);
 }
 
 template class TileRenderer<float>;

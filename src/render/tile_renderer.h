@@ -6,6 +6,7 @@
 #include <chrono>
 #include <vector>
 
+#include "simd/target.h"
 #include "src/render/bin_hits.h"
 #include "src/render/ray_bundle.h"
 #include "src/render/render.h"
@@ -21,7 +22,11 @@ class TileRenderer {
  public:
   // Once `stop` is set a call of Render ends soon, and what it leaves is rubbish.
   TileRenderer(const FrameView<Real>& frame, Timing timing, const std::atomic<bool>& stop)
-      : frame_(frame), binner_(frame.materials.size()), timing_(timing), stop_(stop) {}
+      : frame_(frame),
+        binner_(frame.materials.size()),
+        timing_(timing),
+        stop_(stop),
+        lanes_(static_cast<std::uint32_t>(simd::RunningLanes() * sizeof(float) / sizeof(Real))) {}
 
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).
@@ -29,6 +34,7 @@ class TileRenderer {
 
   const RayCounts& rays() const { return rays_; }
   double phase_seconds(Phase phase) const { return seconds_[static_cast<int>(phase)]; }
+  const LaneUse& lane_use(Phase phase) const { return lane_use_[static_cast<int>(phase)]; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -58,7 +64,8 @@ class TileRenderer {
   void TraceAndShade(const RayBundle<Real>& bundle, int depth);
   void ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth);
   void ShadeLights(const MaterialData<Real>& material, std::uint32_t count);
-  void FindShadows(const LightData<Real>& light, std::uint32_t count);
+  // Returns how many surfaces the light reaches.
+  std::uint32_t FindShadows(const LightData<Real>& light, std::uint32_t count);
   void Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material, std::uint32_t count,
              int depth);
   void FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children, std::uint32_t first,
@@ -71,6 +78,7 @@ class TileRenderer {
   void Reserve(std::uint32_t count);
   void StartClock();
   void Charge(Phase phase);
+  void Charge(Phase phase, std::uint32_t live, std::uint32_t count);
 
   const FrameView<Real>& frame_;
   HitBinner binner_;
@@ -78,6 +86,8 @@ class TileRenderer {
   const std::atomic<bool>& stop_;
   RayCounts rays_;
   double seconds_[static_cast<int>(Phase::kCount)] = {};
+  LaneUse lane_use_[static_cast<int>(Phase::kCount)] = {};
+  std::uint32_t lanes_;
   Clock::time_point clock_;
 
   PixelRect ordered_;          // the tile that pixels_ are of
@@ -94,6 +104,7 @@ class TileRenderer {
   RayBundle<Real> primary_;
   // The rays of this depth and of the next; reflected before refracted wherever their order counts.
   RayBundle<Real> reflected_, refracted_, next_reflected_, next_refracted_;
+  ParentOrder<Real> parent_order_;
   int reflecting_bins_ = 0, refracting_bins_ = 0;
 
   std::uint32_t reserved_ = 0;  // rays that the streams below have room for
