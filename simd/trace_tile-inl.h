@@ -22,6 +22,11 @@ inline constexpr std::uint32_t kFewPackets = std::max(1u, kQuery == Query::kOccl
                                                               ? kPacketSize<Real> / 2
                                                               : kPacketSize<Real> / 8);
 
+// Primitives a leaf, about.
+inline constexpr int kLeafFill = 5;
+// Leaves that a packet may see for its tile to stay one.
+inline constexpr int kMostLeaves = 8;
+
 // Rounding of slopes, products and sums below, generously: a part of the largest number in play.
 template <typename Real>
 inline constexpr Real kTileSlack = 16 * std::numeric_limits<Real>::epsilon();
@@ -66,9 +71,29 @@ HWY_INLINE Real LastDepth(const Tile<Real>& tile, const Packet<Real>& packet) {
   return std::min(hn::GetLane(hn::MaxOfLanes(d, end)), kDefaultTMax<Real>);
 }
 
+// Whether packets see so many leaves at once that their rays fare better apart: the part of the
+// tree's view that a packet covers on average, times the leaves, as if these lay side by side.
+// (low_x, high_x) and (low_y, high_y) are ranges of shears by packet. A choice, not a bound.
+template <typename Real>
+HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Tile<Real>& tile, const Real* low_x,
+                         const Real* high_x, const Real* low_y, const Real* high_y) {
+  Real covered = 0;
+  for (std::uint32_t k = 0; k < tile.count; ++k) {
+    covered += (high_x[k] - low_x[k]) * (high_y[k] - low_y[k]);
+  }
+  const auto size = [&](int axis) { return Real(tree.upper[axis]) - Real(tree.lower[axis]); };
+  const Real ahead = tile.sign > 0 ? Real(tree.lower[tile.kz]) - tile.origin[2]
+                                   : tile.origin[2] - Real(tree.upper[tile.kz]);
+  // Within an octant and about a dominant axis, shears are from 0 to 1.
+  const Real view_x = ahead > 0 ? std::min(Real(1), size(tile.kx) / ahead) : Real(1);
+  const Real view_y = ahead > 0 ? std::min(Real(1), size(tile.ky) / ahead) : Real(1);
+  const Real leaves = static_cast<Real>(tree.triangle_count + tree.sphere_count) / kLeafFill;
+  return covered * leaves > kMostLeaves * static_cast<Real>(tile.count) * view_x * view_y;
+}
+
 // Whether the packets' rays, whose leaf terms are there, can go as a tile: one origin, one octant,
-// one dominant axis, none all but parallel to a plane of boxes, all within the limits of box tests.
-// Then the tile is ready for TraceTile.
+// one dominant axis, none all but parallel to a plane of boxes, all within the limits of box tests;
+// and should, because they are close together. Then the tile is ready for TraceTile.
 template <typename Real>
 HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
   const Lanes<Real> d;
@@ -155,6 +180,7 @@ HWY_INLINE bool PrepareTile(const TreeView<Real>& tree, Tile<Real>& tile) {
     bundle.all_enter_scale[axis] = sign * hn::GetLane(hn::MinOfLanes(d, hn::Abs(enter)));
     bundle.all_leave_scale[axis] = sign * hn::GetLane(hn::MaxOfLanes(d, hn::Abs(leave)));
   };
+  if (IsSpread(tree, tile, low_x, high_x, low_y, high_y)) return false;
   // An empty packet takes the first one's range.
   for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
     if (bundle.t_last[k] != kDone<Real>) continue;

@@ -188,7 +188,7 @@ TEST_CASE("PFM of the other byte order reads the same") {
             std::string("PF\n1 1\n1.0\n") + std::string("\x3f\x80\0\0\x40\0\0\0\0\0\0\0", 12));
   const Result<Film> read = ReadPfm(folder / "a.pfm");
   REQUIRE(read.ok());
-  CHECK(read.value().rgb == std::vector<float>{1.0f, 2.0f, 0.0f});
+  CHECK(read.value().rgb == decltype(Film::rgb){1.0f, 2.0f, 0.0f});
 }
 
 TEST_CASE("damaged PFM files are errors") {

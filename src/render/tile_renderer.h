@@ -2,6 +2,7 @@
 #ifndef SHEAF_RENDER_TILE_RENDERER_H_
 #define SHEAF_RENDER_TILE_RENDERER_H_
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <vector>
@@ -26,7 +27,8 @@ class TileRenderer {
         binner_(frame.materials.size()),
         timing_(timing),
         stop_(stop),
-        lanes_(static_cast<std::uint32_t>(simd::RunningLanes() * sizeof(float) / sizeof(Real))) {}
+        lanes_(std::max(
+            1u, static_cast<std::uint32_t>(simd::RunningLanes() * sizeof(float) / sizeof(Real)))) {}
 
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).

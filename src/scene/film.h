@@ -4,9 +4,30 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace sheaf {
+
+// An allocator that leaves new elements as they are: whoever makes a film writes every pixel of it,
+// and clearing it first would cost a tenth of a simple frame.
+template <typename T>
+struct UninitializedAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UninitializedAllocator<U>;
+  };
+  template <typename U, typename... Arguments>
+  void construct(U* p, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) == 0) {
+      ::new (static_cast<void*>(p)) U;
+    } else {
+      ::new (static_cast<void*>(p)) U(std::forward<Arguments>(arguments)...);
+    }
+  }
+};
 
 // A rectangle of pixels, x1 and y1 exclusive; (0, 0) is the top left pixel.
 struct PixelRect {
@@ -15,10 +36,11 @@ struct PixelRect {
   int height() const { return y1 - y0; }
 };
 
-// Interleaved RGB floats, rows from the top. A crop's film holds the crop alone.
+// Interleaved RGB floats, rows from the top; a new film's hold anything. A crop's film holds the
+// crop alone.
 struct Film {
   int width = 0, height = 0;
-  std::vector<float> rgb;  // 3 * width * height
+  std::vector<float, UninitializedAllocator<float>> rgb;  // 3 * width * height
 
   Film() = default;
   Film(int w, int h)
