@@ -1,12 +1,15 @@
-// Whole frames of the crystal ball: the scalar baseline and every usable SIMD target, one thread,
-// picture writing excluded. Run with --benchmark_enable_random_interleaving for ratios
-// (docs/benchmarking.md).
+// Whole frames: the scalar baseline and every usable SIMD target, one thread,
+// building the tree and writing the picture excluded. Run with
+// --benchmark_enable_random_interleaving for ratios (docs/benchmarking.md).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "bench/frame_scenes.h"
 #include "simd/target.h"
 #include "src/formats/scene_json.h"
 #include "src/render/render.h"
@@ -15,12 +18,13 @@ namespace {
 
 using namespace sheaf;  // NOLINT: a program of its own
 
-// Renders `camera` at 1280x960 with one sample a pixel, as often as the benchmark asks.
+// Renders `camera` with one sample a pixel, as often as the benchmark asks.
 void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& camera,
                  const std::string& target) {
   RenderOptions options;
-  options.width = 1280;
-  options.height = 960;
+  options.width = scene.settings.width;
+  options.height = scene.settings.height;
+  options.max_depth = scene.settings.max_depth;
   options.threads = 1;
   options.engine = target == "scalar" ? Engine::kScalar : Engine::kSimd;
   if (options.engine == Engine::kSimd && !simd::ForceTarget(target)) {
@@ -31,6 +35,7 @@ void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& came
   for (auto _ : state) {
     const Result<Film> film = Render(scene, camera, options, &stats);
     benchmark::DoNotOptimize(film.value().rgb.data());
+    state.SetIterationTime(stats.wall_seconds);
   }
   if (stats.target != target) state.SkipWithError("another target ran");
   state.counters["Mray/s"] = benchmark::Counter(static_cast<double>(stats.rays.traced()) * 1e-6,
@@ -40,20 +45,31 @@ void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& came
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/crystal-ball.json");
+  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/crystal-ball.json");
   if (!scene) {
     fmt::print(stderr, "{}\n", scene.error().message);
     return EXIT_FAILURE;
   }
   std::vector<std::string> targets = simd::UsableTargets();
   targets.push_back("scalar");
-  for (const Camera& camera : scene.value().cameras) {
-    for (const std::string& target : targets) {
-      const std::string name = fmt::format("Frame/crystal-ball/{}/{}", camera.name, target);
-      benchmark::RegisterBenchmark(name.c_str(), [&scene, &camera,
-                                                  target](benchmark::State& state) {
-        RenderFrame(state, scene.value(), camera, target);
-      })->Unit(benchmark::kMillisecond);
+  Scene crystal_ball = std::move(scene).value();
+  crystal_ball.settings.width = 1280;
+  crystal_ball.settings.height = 960;
+  std::vector<std::pair<std::string, Scene>> scenes = {{"crystal-ball", crystal_ball}};
+  for (const bench::FrameScene& frame : bench::FrameScenes()) {
+    scenes.emplace_back(frame.name, frame.make());
+  }
+  for (const auto& [title, shown] : scenes) {
+    for (const Camera& camera : shown.cameras) {
+      for (const std::string& target : targets) {
+        const std::string name = fmt::format("Frame/{}/{}/{}", title, camera.name, target);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [&shown, &camera, target](benchmark::State& state) {
+                                       RenderFrame(state, shown, camera, target);
+                                     })
+            ->Unit(benchmark::kMillisecond)
+            ->UseManualTime();
+      }
     }
   }
   benchmark::Initialize(&argc, argv);

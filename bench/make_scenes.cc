@@ -1,6 +1,7 @@
 #include "bench/make_scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -367,25 +368,6 @@ BenchScene Interior() {
   return scene;
 }
 
-// A tube along a (2, 3) torus knot: 896 by 56 quads, 100,352 triangles.
-BenchScene Knot() {
-  BenchScene scene = NewScene({0, -1.6, 9.3}, {0, 0, 0}, {0, 1, 0}, 45, {4, 6, 8});
-  auto curve = [](double t) {
-    const auto [cos2, sin2] = Turn(2 * t);
-    const auto [cos3, sin3] = Turn(3 * t);
-    const double r = 2 + cos3;
-    return Vec{r * cos2, r * sin2, sin3};
-  };
-  MeshBuilder(scene).AddTorus(896, 56, [&](double u, double v) {
-    const Vec p = curve(u), ahead = Normalize(curve(u + 1e-4) - p);
-    // The torus axis never runs along the knot, so this frame turns without a jump.
-    const Vec side = Normalize(Cross(ahead, Vec{0, 0, 1})), up = Cross(side, ahead);
-    const auto [cos, sin] = Turn(v);
-    return p + side * (0.5 * cos) + up * (0.5 * sin);
-  });
-  return scene;
-}
-
 // A sphere and nine a third as large around its upper side, and so on; `up` is a unit vector.
 void AddFlake(BenchScene& scene, Vec center, double radius, Vec up, int depth) {
   AddSphere(scene, center, radius);
@@ -402,12 +384,20 @@ void AddFlake(BenchScene& scene, Vec center, double radius, Vec up, int depth) {
   }
 }
 
-// As in Haines's SPD balls, view and ground included.
-BenchScene SphereFlake(int depth) {
-  BenchScene scene = NewScene({2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, {4, 3, 2});
-  MeshBuilder(scene).AddQuad({12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5});
-  AddFlake(scene, {0, 0, 0}, 0.5, {0, 0, 1}, depth);
-  return scene;
+void AddTetrahedra(BenchScene& scene, const std::array<Vec, 4>& corners, int depth) {
+  if (depth == 0) {
+    MeshBuilder mesh(scene);
+    const std::uint32_t a = mesh.AddVertex(corners[0]), b = mesh.AddVertex(corners[1]),
+                        c = mesh.AddVertex(corners[2]), d = mesh.AddVertex(corners[3]);
+    mesh.AddTriangle(a, b, c), mesh.AddTriangle(a, c, d);
+    mesh.AddTriangle(a, d, b), mesh.AddTriangle(b, d, c);
+    return;
+  }
+  for (const Vec& kept : corners) {
+    std::array<Vec, 4> half = corners;
+    for (Vec& corner : half) corner = (corner + kept) * 0.5;
+    AddTetrahedra(scene, half, depth - 1);
+  }
 }
 
 BenchScene SphereCloud() {
@@ -428,6 +418,52 @@ BenchScene CrystalBall() {
   return scene;
 }
 
+}  // namespace
+
+BenchScene SphereFlake(int depth) {
+  BenchScene scene = NewScene({2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, {4, 3, 2});
+  MeshBuilder(scene).AddQuad({12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5});
+  AddFlake(scene, {0, 0, 0}, 0.5, {0, 0, 1}, depth);
+  return scene;
+}
+
+BenchScene TorusKnot() {
+  BenchScene scene = NewScene({0, -1.6, 9.3}, {0, 0, 0}, {0, 1, 0}, 45, {4, 6, 8});
+  auto curve = [](double t) {
+    const auto [cos2, sin2] = Turn(2 * t);
+    const auto [cos3, sin3] = Turn(3 * t);
+    const double r = 2 + cos3;
+    return Vec{r * cos2, r * sin2, sin3};
+  };
+  MeshBuilder(scene).AddTorus(896, 56, [&](double u, double v) {
+    const Vec p = curve(u), ahead = Normalize(curve(u + 1e-4) - p);
+    // The torus axis never runs along the knot, so this frame turns without a jump.
+    const Vec side = Normalize(Cross(ahead, Vec{0, 0, 1})), up = Cross(side, ahead);
+    const auto [cos, sin] = Turn(v);
+    return p + side * (0.5 * cos) + up * (0.5 * sin);
+  });
+  return scene;
+}
+
+BenchScene TetraPyramid(int depth) {
+  BenchScene scene = NewScene({1, -3.2, -2.2}, {0, 0, 0}, {-1, -1, 1}, 45, {2, -18, -5});
+  AddTetrahedra(scene, {Vec{-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}, {1, 1, 1}}, depth);
+  return scene;
+}
+
+BenchScene Mountain(std::uint32_t side) {
+  BenchScene scene = NewScene({-1.6, 1.6, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, {-100, -100, 100});
+  MeshBuilder(scene).AddGrid(side, side, [](double u, double v) {
+    const Vec p{2 * u - 1, 2 * v - 1, 0};
+    // Higher toward the middle, so that it is one mountain.
+    const double rise = 0.35 * (1 - Dot(p, p) / 2);
+    return p + Vec{0, 0, rise + 0.35 * Fractal(p * 1.7 + Vec{0.3, 0.6, 0.5}, 6)};
+  });
+  return scene;
+}
+
+namespace {
+
 constexpr SceneMaker kCatalogue[] = {
     {"crystal-ball", 4, CrystalBall},
     {"low-poly", 688, LowPoly},
@@ -437,7 +473,7 @@ constexpr SceneMaker kCatalogue[] = {
     {"scan-1M", 1'003'520, [] { return Scan(224); }},
     {"scan-10M", 9'996'980, [] { return Scan(707); }},
     {"interior-200k", 206'732, Interior},
-    {"knot-100k", 100'352, Knot},
+    {"knot-100k", 100'352, TorusKnot},
     {"sphereflake-7k", 7'383, [] { return SphereFlake(4); }},
     {"sphereflake-66k", 66'432, [] { return SphereFlake(5); }},
     {"spheres-1M", 1'000'000, SphereCloud},

@@ -39,6 +39,20 @@ std::span<const SceneMaker> SceneCatalogue();
 // frequency^2 and blown up. Closed: triangles that meet share their vertices. `frequency` >= 1.
 BenchScene GeodesicSphere(std::uint32_t frequency);
 
+// A sphere of radius 0.5 with 9 spheres a third as large around its upper side, and so on, `depth`
+// times, over a ground of two triangles (Haines 1987, "balls"): 7,381 spheres at depth 4.
+BenchScene SphereFlake(int depth);
+
+// A tetrahedron between corners of the cube [-1, 1]^3, of which only the four half as large at its
+// corners are kept, and so on, `depth` times (Haines 1987, "tetra"): 4^(depth + 1) triangles.
+BenchScene TetraPyramid(int depth);
+
+// A height field over [-1, 1]^2 of 2 * side^2 triangles, z up. `side` >= 1.
+BenchScene Mountain(std::uint32_t side);
+
+// A tube along a (2, 3) torus knot: 896 by 56 quads, 100,352 triangles.
+BenchScene TorusKnot();
+
 // A number in [0, 1) that depends on `key` alone.
 double HashUnit(std::uint64_t key);
 
