@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <csignal>
@@ -18,6 +19,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -251,6 +253,115 @@ TEST_CASE("the same film gives the same PNG bytes") {
   CHECK(ReadText(folder / "a.png") == ReadText(folder / "b.png"));
 }
 
+// Rows [y, y + count) of a film.
+Film RowsOf(const Film& film, int y, int count) {
+  Film rows(film.width, count);
+  std::copy_n(film.pixel(0, y), rows.rgb.size(), rows.rgb.begin());
+  return rows;
+}
+
+// Writes the film `chunk` rows at a time.
+Status WriteInChunks(const Film& film, int chunk, const std::string& path) {
+  Result<PictureWriter> writer =
+      PictureWriter::Create(path, film.width, film.height, Transfer::kSrgb);
+  if (!writer) return writer.error();
+  for (int y = 0; y < film.height; y += chunk) {
+    const Film rows = RowsOf(film, y, std::min(chunk, film.height - y));
+    const Status written = writer.value().WriteRows(rows);
+    if (!written) return written;
+  }
+  return writer.value().Finish();
+}
+
+TEST_CASE("rows in chunks of any height give the file of the whole film") {
+  const Folder folder;
+  for (const std::string ending : {".png", ".pfm"}) {
+    for (const auto& [width, height] : {std::pair(1, 1), {5, 1}, {1, 9}, {37, 23}}) {
+      const Film film = RandomFilm(width, height);
+      REQUIRE(WritePicture(film, Transfer::kSrgb, folder / ("whole" + ending)).ok());
+      const std::string whole = ReadText(folder / ("whole" + ending));
+      REQUIRE(whole.size() > 20);
+      for (const int chunk : {1, 2, 7, 22, 23}) {
+        CAPTURE(chunk);
+        REQUIRE(WriteInChunks(film, chunk, folder / ("chunks" + ending)).ok());
+        CHECK(ReadText(folder / ("chunks" + ending)) == whole);
+      }
+    }
+  }
+}
+
+TEST_CASE("a picture without its Finish does not appear, and the old one stays") {
+  const Folder folder;
+  const Film film = RandomFilm(30, 20);
+  for (const std::string ending : {".png", ".pfm"}) {
+    const std::string fresh = folder / ("new" + ending), old = folder / ("old" + ending);
+    WriteText(old, "the old picture");
+    const std::size_t count = folder.FileCount();
+    for (const std::string& path : {fresh, old}) {
+      Result<PictureWriter> writer = PictureWriter::Create(path, 30, 20, Transfer::kLinear);
+      REQUIRE(writer.ok());
+      REQUIRE(writer.value().WriteRows(RowsOf(film, 0, 13)).ok());
+      CHECK(folder.FileCount() == count + 1);  // the temporary
+    }
+    CHECK(folder.FileCount() == count);
+    CHECK(ReadText(old) == "the old picture");
+  }
+}
+
+TEST_CASE("a picture that cannot be opened is an error before its first row") {
+  const Folder folder;
+  for (const char* name : {"absent/a.png", "absent/a.pfm"}) {
+    const Result<PictureWriter> writer =
+        PictureWriter::Create(folder / name, 8, 8, Transfer::kLinear);
+    REQUIRE(!writer.ok());
+    CHECK(writer.error().kind == ErrorKind::kInputOutput);
+    CHECK(writer.error().message.starts_with((folder / name) + ": "));
+  }
+  const Result<PictureWriter> unknown =
+      PictureWriter::Create(folder / "a.jpg", 8, 8, Transfer::kLinear);
+  REQUIRE(!unknown.ok());
+  CHECK(unknown.error().kind == ErrorKind::kUsage);
+  if (!fs::exists("/dev/full")) return;
+  for (const char* name : {"full.png", "full.pfm"}) {
+    fs::create_symlink("/dev/full", folder / name);
+    CHECK(!PictureWriter::Create(folder / name, 8, 8, Transfer::kLinear).ok());
+  }
+}
+
+TEST_CASE("a disk that fills up between two rows leaves no file") {
+  const Folder folder;
+  const Film film = RandomFilm(64, 64);
+  for (const char* name : {"a.png", "a.pfm"}) {
+    Result<PictureWriter> writer = PictureWriter::Create(folder / name, 64, 128, Transfer::kLinear);
+    REQUIRE(writer.ok());
+    REQUIRE(writer.value().WriteRows(film).ok());
+    const FileSizeLimit limit(100);
+    Status written = writer.value().WriteRows(film);
+    // libpng may keep the last bytes to itself until the end.
+    if (written) written = writer.value().Finish();
+    REQUIRE(!written.ok());
+    CHECK(written.error().kind == ErrorKind::kInputOutput);
+    CHECK(written.error().message.starts_with((folder / name) + ": "));
+  }
+  CHECK(folder.FileCount() == 0);
+}
+
+TEST_CASE("a pipe gets the bytes of the file") {
+  const Folder folder;
+  const Film film = RandomFilm(33, 17);
+  for (const std::string ending : {".png", ".pfm"}) {
+    const std::string pipe = folder / ("pipe" + ending);
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    std::string read;
+    std::thread reader([&] { read = ReadText(pipe); });
+    const Status written = WriteInChunks(film, 5, pipe);
+    reader.join();
+    REQUIRE(written.ok());
+    REQUIRE(WriteInChunks(film, 5, folder / ("file" + ending)).ok());
+    CHECK(read == ReadText(folder / ("file" + ending)));
+  }
+}
+
 // Two pixels in a format of libpng's simplified interface; the bytes are what it takes for them.
 void WriteForeignPng(const std::string& path, png_uint_32 format, const void* pixels,
                      const void* palette = nullptr, png_uint_32 colours = 0) {
@@ -349,6 +460,22 @@ TEST_CASE("a file appears at Commit and not before") {
   }
   CHECK(ReadText(path) == "new");
   CHECK(folder.FileCount() == 1);
+}
+
+TEST_CASE("bytes go to their offsets in any order") {
+  const Folder folder;
+  Result<AtomicFile> file = AtomicFile::Create(folder / "a");
+  REQUIRE(file.ok());
+  CHECK(file.value().seekable());
+  REQUIRE(file.value().Write("ab", 2).ok());
+  REQUIRE(file.value().WriteAt(6, "gh", 2).ok());
+  REQUIRE(file.value().WriteAt(4, "ef", 2).ok());
+  REQUIRE(file.value().Write("c", 1).ok());
+  REQUIRE(file.value().Commit().ok());
+  CHECK(ReadText(folder / "a") == std::string("abc\0efgh", 8));
+  const Result<AtomicFile> device = AtomicFile::Create("/dev/null");
+  REQUIRE(device.ok());
+  CHECK(!device.value().seekable());
 }
 
 TEST_CASE("a replaced file keeps its permissions, a symbolic link stays a link") {

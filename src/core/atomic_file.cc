@@ -135,19 +135,35 @@ Result<AtomicFile> AtomicFile::Create(const std::string& path) {
   return file;
 }
 
-Status AtomicFile::Write(const void* data, std::size_t size) {
+// `write_some(done, left)` writes some of the `left` bytes after the first `done`, as write(2)
+// does.
+template <typename WriteSome>
+Status AtomicFile::WriteAll(std::size_t size, const WriteSome& write_some) {
   assert(descriptor_ >= 0);
-  const char* next = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = write(descriptor_, next, size);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t written = write_some(done, size - done);
     if (written < 0) {
       if (errno == EINTR) continue;
       return InputOutput(path_, "cannot be written", errno);
     }
-    next += written;
-    size -= static_cast<std::size_t>(written);
+    done += static_cast<std::size_t>(written);
   }
   return Done{};
+}
+
+Status AtomicFile::Write(const void* data, std::size_t size) {
+  return WriteAll(size, [&](std::size_t done, std::size_t left) {
+    return write(descriptor_, static_cast<const char*>(data) + done, left);
+  });
+}
+
+Status AtomicFile::WriteAt(std::uint64_t offset, const void* data, std::size_t size) {
+  assert(seekable());
+  static_assert(sizeof(off_t) >= 8, "large pictures have files of more than 2 GiB");
+  return WriteAll(size, [&](std::size_t done, std::size_t left) {
+    return pwrite(descriptor_, static_cast<const char*>(data) + done, left,
+                  static_cast<off_t>(offset + done));
+  });
 }
 
 Status AtomicFile::Commit() {

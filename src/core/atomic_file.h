@@ -3,6 +3,7 @@
 #define SHEAF_CORE_ATOMIC_FILE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -25,12 +26,20 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&& other) = delete;
   ~AtomicFile();
 
-  // After a failed Write the only call left is the destructor.
+  // Whether WriteAt may be called: pipes and devices take bytes in their order alone.
+  bool seekable() const { return !temporary_.empty(); }
+
+  // After a failed Write or WriteAt the only call left is the destructor.
   Status Write(const void* data, std::size_t size);
+  // At a byte offset from the file's beginning, in any order; what nothing is written to holds
+  // zeros. Leaves the place where Write goes on.
+  Status WriteAt(std::uint64_t offset, const void* data, std::size_t size);
   Status Commit();
 
  private:
   AtomicFile(int descriptor, std::string path, std::string destination, std::string temporary);
+  template <typename WriteSome>
+  Status WriteAll(std::size_t size, const WriteSome& write_some);
 
   int descriptor_;           // -1 once committed or moved from
   std::string path_;         // as the caller spelled it, for messages

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -11,9 +12,9 @@
 #include <cstring>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "src/core/atomic_file.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -72,22 +73,52 @@ bool ParseWhole(std::string_view word, T& value) {
 
 }  // namespace
 
-Status WritePfm(const Film& film, const std::string& path) {
+PfmWriter::PfmWriter(AtomicFile file, std::size_t header_bytes, int width, int height)
+    : file_(std::move(file)),
+      header_bytes_(header_bytes),
+      row_bytes_(kBytesPerPixel * static_cast<std::size_t>(width)),
+      rows_left_(static_cast<std::size_t>(height)),
+      held_(file_.seekable() ? 0 : row_bytes_ * rows_left_) {}
+
+Result<PfmWriter> PfmWriter::Create(const std::string& path, int width, int height) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
-  const std::string header = fmt::format("PF\n{} {}\n-1.0\n", film.width, film.height);
-  Status status = file.value().Write(header.data(), header.size());
+  const std::string header = fmt::format("PF\n{} {}\n-1.0\n", width, height);
+  const Status status = file.value().Write(header.data(), header.size());
+  if (!status) return status.error();
+  return PfmWriter(std::move(file).value(), header.size(), width, height);
+}
 
-  std::vector<std::uint8_t> row(kBytesPerPixel * static_cast<std::size_t>(film.width));
-  for (int y = film.height - 1; y >= 0 && status.ok(); --y) {
-    std::memcpy(row.data(), film.pixel(0, y), row.size());
-    if constexpr (std::endian::native == std::endian::big) {
-      SwapEachFloat(row.data(), row.size() / 4);
-    }
-    status = file.value().Write(row.data(), row.size());
+Status PfmWriter::WriteRow(const float* rgb) {
+  assert(rows_left_ > 0);
+  const void* bytes = rgb;
+  std::vector<std::uint8_t> swapped;
+  if constexpr (std::endian::native == std::endian::big) {
+    swapped.resize(row_bytes_);
+    std::memcpy(swapped.data(), rgb, row_bytes_);
+    SwapEachFloat(swapped.data(), row_bytes_ / sizeof(float));
+    bytes = swapped.data();
   }
-  if (!status) return status;
-  return file.value().Commit();
+  const std::size_t offset = row_bytes_ * --rows_left_;
+  if (file_.seekable()) return file_.WriteAt(header_bytes_ + offset, bytes, row_bytes_);
+  std::memcpy(held_.data() + offset, bytes, row_bytes_);
+  return Done{};
+}
+
+Status PfmWriter::Finish() {
+  assert(rows_left_ == 0);
+  const Status written = file_.Write(held_.data(), held_.size());
+  return written ? file_.Commit() : written;
+}
+
+Status WritePfm(const Film& film, const std::string& path) {
+  Result<PfmWriter> writer = PfmWriter::Create(path, film.width, film.height);
+  if (!writer) return writer.error();
+  for (int y = 0; y < film.height; ++y) {
+    const Status written = writer.value().WriteRow(film.pixel(0, y));
+    if (!written) return written;
+  }
+  return writer.value().Finish();
 }
 
 Result<Film> ReadPfm(const std::string& path) {

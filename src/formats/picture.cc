@@ -6,9 +6,8 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
-#include "src/formats/pfm.h"
-#include "src/formats/png.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -37,12 +36,16 @@ std::uint8_t QuantizeChannel(float value, Transfer transfer) {
   return static_cast<std::uint8_t>(std::floor(std::min(encoded, 1.0) * 255.0 + 0.5));
 }
 
+void Quantize(const float* values, std::size_t count, Transfer transfer, std::uint8_t* bytes) {
+  std::transform(values, values + count, bytes,
+                 [transfer](float value) { return QuantizeChannel(value, transfer); });
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> QuantizeTo8Bit(const Film& film, Transfer transfer) {
   std::vector<std::uint8_t> bytes(film.rgb.size());
-  std::transform(film.rgb.begin(), film.rgb.end(), bytes.begin(),
-                 [transfer](float value) { return QuantizeChannel(value, transfer); });
+  Quantize(film.rgb.data(), film.rgb.size(), transfer, bytes.data());
   return bytes;
 }
 
@@ -52,11 +55,43 @@ Status CheckPicturePath(const std::string& path) {
                fmt::format("{}: unknown picture format; the name must end in .png or .pfm", path)};
 }
 
-Status WritePicture(const Film& film, Transfer transfer, const std::string& path) {
+Result<PictureWriter> PictureWriter::Create(const std::string& path, int width, int height,
+                                            Transfer transfer) {
   const Status known = CheckPicturePath(path);
-  if (!known) return known;
-  if (FormatOf(path) == Format::kPfm) return WritePfm(film, path);
-  return WritePng({film.width, film.height, QuantizeTo8Bit(film, transfer)}, transfer, path);
+  if (!known) return known.error();
+  if (FormatOf(path) == Format::kPfm) {
+    Result<PfmWriter> writer = PfmWriter::Create(path, width, height);
+    if (!writer) return writer.error();
+    return PictureWriter(std::move(writer).value(), transfer);
+  }
+  Result<PngWriter> writer = PngWriter::Create(path, width, height, transfer);
+  if (!writer) return writer.error();
+  return PictureWriter(std::move(writer).value(), transfer);
+}
+
+Status PictureWriter::WriteRows(const Film& rows) {
+  Status status = Done{};
+  for (int y = 0; y < rows.height && status; ++y) {
+    if (auto* pfm = std::get_if<PfmWriter>(&writer_)) {
+      status = pfm->WriteRow(rows.pixel(0, y));
+    } else {
+      row_.resize(3 * static_cast<std::size_t>(rows.width));
+      Quantize(rows.pixel(0, y), row_.size(), transfer_, row_.data());
+      status = std::get<PngWriter>(writer_).WriteRow(row_.data());
+    }
+  }
+  return status;
+}
+
+Status PictureWriter::Finish() {
+  return std::visit([](auto& writer) { return writer.Finish(); }, writer_);
+}
+
+Status WritePicture(const Film& film, Transfer transfer, const std::string& path) {
+  Result<PictureWriter> writer = PictureWriter::Create(path, film.width, film.height, transfer);
+  if (!writer) return writer.error();
+  const Status written = writer.value().WriteRows(film);
+  return written ? writer.value().Finish() : written;
 }
 
 }  // namespace sheaf

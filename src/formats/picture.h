@@ -5,9 +5,13 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "src/core/error.h"
+#include "src/formats/pfm.h"
+#include "src/formats/png.h"
 #include "src/scene/film.h"
 #include "src/scene/scene.h"
 
@@ -20,7 +24,32 @@ std::vector<std::uint8_t> QuantizeTo8Bit(const Film& film, Transfer transfer);
 // Whether WritePicture knows the ending of this path (.png, .pfm, any case); an error lists them.
 Status CheckPicturePath(const std::string& path);
 
-// Writes by the path's ending: .png (8 bit) or .pfm (little-endian float, linear, untouched bits).
+// Writes a picture whose rows come in turn, by the path's ending: .png (8 bit) or .pfm
+// (little-endian float, linear, untouched bits). No more than a row is kept, but of a .pfm that is
+// a pipe or a device. Without a Finish() the file does not appear, and one that was there stays.
+class PictureWriter {
+ public:
+  // Sides in [1, kMaxImageSide]. kUsage for an unknown ending; kInputOutput where the path cannot
+  // be written.
+  static Result<PictureWriter> Create(const std::string& path, int width, int height,
+                                      Transfer transfer);
+
+  // The next rows from the top, as wide as the picture. After an error the only call left is the
+  // destructor.
+  Status WriteRows(const Film& rows);
+  // Once, after all rows.
+  Status Finish();
+
+ private:
+  PictureWriter(std::variant<PngWriter, PfmWriter> writer, Transfer transfer)
+      : writer_(std::move(writer)), transfer_(transfer) {}
+
+  std::variant<PngWriter, PfmWriter> writer_;
+  Transfer transfer_;
+  std::vector<std::uint8_t> row_;  // quantised
+};
+
+// The whole film through a PictureWriter.
 Status WritePicture(const Film& film, Transfer transfer, const std::string& path);
 
 }  // namespace sheaf

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <cassert>
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "src/core/atomic_file.h"
 #include "src/core/version.h"
@@ -35,62 +37,6 @@ void OnWarning(png_structp, png_const_charp) {}
 
 Error Failed(const std::string& path, std::string_view what) {
   return {ErrorKind::kInputOutput, fmt::format("{}: {}", path, what)};
-}
-
-class PngWriter {
- public:
-  PngWriter()
-      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, OnError, OnWarning)) {
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
-  }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
-
-  // False: see `complaint`.
-  bool Encode(const Picture8& picture, Transfer transfer, png_rw_ptr sink, void* sink_state) {
-    if (info_ == nullptr) return false;
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_set_write_fn(png_, sink_state, sink, nullptr);
-    png_set_IHDR(png_, info_, static_cast<png_uint_32>(picture.width),
-                 static_cast<png_uint_32>(picture.height), 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (transfer == Transfer::kSrgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
-    char key[] = "Software";
-    char software[64];
-    std::snprintf(software, sizeof(software), "sheaf %s", kVersion);
-    png_text text = {};
-    text.compression = PNG_TEXT_COMPRESSION_NONE;
-    text.key = key;
-    text.text = software;
-    png_set_text(png_, info_, &text, 1);
-    png_write_info(png_, info_);
-    const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
-    for (int y = 0; y < picture.height; ++y) {
-      png_write_row(png_, picture.rgb.data() + stride * static_cast<std::size_t>(y));
-    }
-    png_write_end(png_, info_);
-    return true;
-  }
-
-  Complaint complaint;
-
- private:
-  png_structp png_;
-  png_infop info_ = nullptr;
-};
-
-// A failed write is kept, and later bytes are dropped, rather than thrown through libpng.
-struct FileSink {
-  AtomicFile file;
-  std::optional<Error> error;
-};
-
-void WriteToSink(png_structp png, png_bytep data, png_size_t size) {
-  auto* sink = static_cast<FileSink*>(png_get_io_ptr(png));
-  if (sink->error) return;
-  const Status status = sink->file.Write(data, size);
-  if (!status) sink->error = status.error();
 }
 
 class PngReader {
@@ -140,15 +86,121 @@ class PngReader {
 
 }  // namespace
 
-Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
+// Owns libpng's state and the file; libpng keeps pointers into both, so that it never moves.
+class PngWriter::Encoder {
+ public:
+  Encoder(AtomicFile file, std::string path, int width, int height)
+      : path_(std::move(path)),
+        file_(std::move(file)),
+        width_(static_cast<png_uint_32>(width)),
+        height_(static_cast<png_uint_32>(height)),
+        rows_left_(height),
+        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, OnError, OnWarning)) {
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+  }
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+  ~Encoder() { png_destroy_write_struct(&png_, &info_); }
+
+  Status WriteHeader(Transfer transfer) { return StatusOf(EncodeHeader(transfer)); }
+
+  Status WriteRow(const std::uint8_t* rgb) {
+    assert(rows_left_ > 0);
+    --rows_left_;
+    return StatusOf(EncodeRow(rgb));
+  }
+
+  Status Finish() {
+    assert(rows_left_ == 0);
+    const Status ended = StatusOf(EncodeEnd());
+    return ended ? file_.Commit() : ended;
+  }
+
+ private:
+  // False: see `complaint_`, and so for the two below.
+  bool EncodeHeader(Transfer transfer) {
+    if (info_ == nullptr) return false;
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_set_write_fn(png_, this, &WriteToFile, nullptr);
+    png_set_IHDR(png_, info_, width_, height_, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (transfer == Transfer::kSrgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+    char key[] = "Software";
+    char software[64];
+    std::snprintf(software, sizeof(software), "sheaf %s", kVersion);
+    png_text text = {};
+    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    text.key = key;
+    text.text = software;
+    png_set_text(png_, info_, &text, 1);
+    png_write_info(png_, info_);
+    return true;
+  }
+
+  bool EncodeRow(const std::uint8_t* rgb) {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_write_row(png_, rgb);
+    return true;
+  }
+
+  bool EncodeEnd() {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_write_end(png_, info_);
+    return true;
+  }
+
+  // A failed write is kept, and later bytes are dropped, rather than thrown through libpng.
+  static void WriteToFile(png_structp png, png_bytep data, png_size_t size) {
+    auto* encoder = static_cast<Encoder*>(png_get_io_ptr(png));
+    if (encoder->error_) return;
+    const Status status = encoder->file_.Write(data, size);
+    if (!status) encoder->error_ = status.error();
+  }
+
+  Status StatusOf(bool encoded) const {
+    if (error_) return *error_;
+    if (!encoded) return Failed(path_, fmt::format("cannot be encoded: {}", complaint_.text));
+    return Done{};
+  }
+
+  std::string path_;  // for messages
+  AtomicFile file_;
+  std::optional<Error> error_;  // the first failed write
+  png_uint_32 width_, height_;
+  int rows_left_;
+  Complaint complaint_;
+  png_structp png_;
+  png_infop info_ = nullptr;
+};
+
+PngWriter::PngWriter(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}
+PngWriter::PngWriter(PngWriter&&) noexcept = default;
+PngWriter::~PngWriter() = default;
+
+Result<PngWriter> PngWriter::Create(const std::string& path, int width, int height,
+                                    Transfer transfer) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
-  FileSink sink{std::move(file).value(), std::nullopt};
-  PngWriter writer;
-  const bool encoded = writer.Encode(picture, transfer, &WriteToSink, &sink);
-  if (sink.error) return *sink.error;
-  if (!encoded) return Failed(path, fmt::format("cannot be encoded: {}", writer.complaint.text));
-  return sink.file.Commit();
+  auto encoder = std::make_unique<Encoder>(std::move(file).value(), path, width, height);
+  const Status begun = encoder->WriteHeader(transfer);
+  if (!begun) return begun.error();
+  return PngWriter(std::move(encoder));
+}
+
+Status PngWriter::WriteRow(const std::uint8_t* rgb) { return encoder_->WriteRow(rgb); }
+
+Status PngWriter::Finish() { return encoder_->Finish(); }
+
+Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
+  Result<PngWriter> writer = PngWriter::Create(path, picture.width, picture.height, transfer);
+  if (!writer) return writer.error();
+  const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
+  for (int y = 0; y < picture.height; ++y) {
+    const Status written =
+        writer.value().WriteRow(picture.rgb.data() + stride * static_cast<std::size_t>(y));
+    if (!written) return written;
+  }
+  return writer.value().Finish();
 }
 
 Result<Picture8> ReadPng(const std::string& path) {

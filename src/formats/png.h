@@ -3,6 +3,7 @@
 #define SHEAF_FORMATS_PNG_H_
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,31 @@ struct Picture8 {
   std::vector<std::uint8_t> rgb;  // 3 * width * height, interleaved, rows from the top
 };
 
-// `transfer` is recorded in the file and changes no pixel; a linear picture carries no such record,
-// because viewers would brighten it.
+// Writes an 8-bit picture row by row. `transfer` is recorded in the file and changes no pixel; a
+// linear picture carries no such record, because viewers would brighten it. Without a Finish() the
+// file does not appear, and one that was there stays.
+class PngWriter {
+ public:
+  // Sides in [1, kMaxImageSide]. kInputOutput where the path cannot be written.
+  static Result<PngWriter> Create(const std::string& path, int width, int height,
+                                  Transfer transfer);
+  PngWriter(PngWriter&&) noexcept;
+  ~PngWriter();
+
+  // The next row from the top: 3 * width bytes. After an error the only call left is the
+  // destructor.
+  Status WriteRow(const std::uint8_t* rgb);
+  // Once, after all rows.
+  Status Finish();
+
+ private:
+  class Encoder;
+  explicit PngWriter(std::unique_ptr<Encoder> encoder);
+
+  std::unique_ptr<Encoder> encoder_;
+};
+
+// The whole picture through a PngWriter.
 Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path);
 
 // Reads any PNG as RGB: grey is spread, palettes looked up, 16 bits rounded to 8, alpha dropped.
