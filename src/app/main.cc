@@ -94,8 +94,10 @@ ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
 
 ExitCode Main(int argc, char** argv) {
   FillStandardDescriptors();
-  // A reader that goes away shows as a failed write, which is reported.
+  // A reader that goes away and a limit on the size of files show as failed writes, which are
+  // reported.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 
   CLI::App app("Sheaf, a SIMD packet ray tracer for CPUs", "sheaf");
   app.set_version_flag("--version", fmt::format("sheaf {}", kVersion));

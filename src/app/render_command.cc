@@ -240,26 +240,36 @@ ProgressStyle ChooseProgressStyle(const RenderRequest& request) {
   return request.progress == "plain" ? ProgressStyle::kPlain : AutomaticProgressStyle();
 }
 
-std::uint64_t PixelCount(const RenderOptions& options) {
-  const int width = options.crop ? options.crop->width() : options.width;
-  const int height = options.crop ? options.crop->height() : options.height;
-  return static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+PixelSize PictureSize(const RenderOptions& options) {
+  if (options.crop) return {options.crop->width(), options.crop->height()};
+  return {options.width, options.height};
+}
+
+std::uint64_t PixelCount(const PixelSize& size) {
+  return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
 Result<FrameRecord> RenderFrame(const Scene& scene, const Frame& frame,
                                 const RenderOptions& options, ProgressStyle style,
                                 std::string label) {
+  const PixelSize size = PictureSize(options);
   FrameRecord record{frame.camera->name, frame.path, options, {}};
-  FrameWatch watch(style, std::move(label), options, PixelCount(options));
-  const Result<Film> film = Render(scene, *frame.camera, options, &record.stats, watch.progress());
+  // Before the first ray: what cannot be written costs no rendering.
+  Result<PictureWriter> writer =
+      PictureWriter::Create(frame.path, size.width, size.height, scene.settings.transfer);
+  if (!writer) return writer.error();
+  FrameWatch watch(style, std::move(label), options, PixelCount(size));
+  const RowSink write = [&](const Film& rows) { return writer.value().WriteRows(rows); };
+  const Status rendered =
+      RenderRows(scene, *frame.camera, options, write, &record.stats, watch.progress());
   // A signal in the last tenth of a second may find the frame finished: it stops the command still.
-  if (PendingSignal() != 0 || (!film && film.error().kind == ErrorKind::kInterrupted)) {
+  if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {
     return Error{ErrorKind::kInterrupted,
                  fmt::format("interrupted; {} was not written", frame.path)};
   }
-  if (!film) return film.error();
+  if (!rendered) return rendered.error();
   watch.Finish(record.stats);
-  const Status written = WritePicture(film.value(), scene.settings.transfer, frame.path);
+  const Status written = writer.value().Finish();
   if (!written) return written.error();
   return record;
 }

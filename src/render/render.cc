@@ -7,11 +7,13 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simd/target.h"
 #include "src/bvh/build_tree.h"
 #include "src/core/parallel.h"
+#include "src/render/band_queue.h"
 #include "src/render/compile_scene.h"
 #include "src/render/sample_pattern.h"
 #include "src/render/tile_renderer.h"
@@ -62,32 +64,84 @@ class ScalarTileRenderer {
   const std::atomic<bool>& stop_;
 };
 
-// Hands the tiles of `area` to workers until all are done or a stop is asked for.
-template <typename Renderer, typename Real>
-bool RenderTiles(const FrameView<Real>& frame, const PixelRect& area, const RenderOptions& options,
-                 Film& film, RenderStats& stats, RenderProgress& progress) {
+int CeilDivide(int a, int b) { return (a + b - 1) / b; }
+
+constexpr int kBandBytes = 32 << 20;
+constexpr int kBandTilesPerThread = 8;
+
+// Rows of pixels a band, whole tiles but where the area ends: as many as kBandBytes hold, but
+// enough tiles that few threads idle at a band's end. Such a film is smaller than the threads' own
+// buffers, whatever the size of a tile.
+int BandRows(const PixelRect& area, const RenderOptions& options, int threads) {
   const int size = options.tile_size;
-  const auto columns = static_cast<std::uint64_t>((area.width() + size - 1) / size);
-  const auto rows = static_cast<std::uint64_t>((area.height() + size - 1) / size);
-  const auto wanted = static_cast<std::uint64_t>(ThreadCount(options.threads));
-  const int threads = static_cast<int>(std::min(wanted, columns * rows));
-  std::vector<std::unique_ptr<Renderer>> workers(static_cast<std::size_t>(threads));
+  const int columns = CeilDivide(area.width(), size);
+  int tile_rows = CeilDivide(options.band_rows, size);
+  if (options.band_rows == 0) {
+    const int row_bytes = static_cast<int>(3 * sizeof(float)) * area.width();
+    const int held = kBandBytes / row_bytes / size;
+    tile_rows = std::max({1, held, CeilDivide(kBandTilesPerThread * threads, columns)});
+  }
+  // Bands of one height, so that the last is no sliver.
+  const int all = CeilDivide(area.height(), size);
+  return CeilDivide(all, CeilDivide(all, tile_rows)) * size;
+}
+
+// Hands the tiles of `band` to the workers until all are done or a stop is asked for.
+template <typename Renderer>
+void RenderTiles(const std::vector<std::unique_ptr<Renderer>>& workers, const PixelRect& band,
+                 int size, Film& film, RenderProgress& progress) {
+  const auto columns = static_cast<std::uint64_t>(CeilDivide(band.width(), size));
+  const auto rows = static_cast<std::uint64_t>(CeilDivide(band.height(), size));
+  ParallelFor(
+      static_cast<int>(workers.size()), columns * rows, [&](int worker, std::uint64_t item) {
+        if (progress.stop.load(std::memory_order_relaxed)) return;
+        PixelRect tile;
+        tile.x0 = band.x0 + static_cast<int>(item % columns) * size;
+        tile.y0 = band.y0 + static_cast<int>(item / columns) * size;
+        tile.x1 = std::min(tile.x0 + size, band.x1);
+        tile.y1 = std::min(tile.y0 + size, band.y1);
+        workers[static_cast<std::size_t>(worker)]->Render(tile, band.x0, band.y0, film);
+        progress.pixels_done.fetch_add(
+            static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()),
+            std::memory_order_relaxed);
+      });
+}
+
+// Renders `area` band by band; the sink has one band while the next renders.
+template <typename Renderer, typename Real>
+Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
+                   const RenderOptions& options, const BandSink& sink, RenderStats& stats,
+                   RenderProgress& progress) {
+  const int size = options.tile_size;
+  const int wanted = ThreadCount(options.threads);
+  const int rows = BandRows(area, options, wanted);
+  const std::int64_t tiles = std::int64_t{CeilDivide(area.width(), size)} * CeilDivide(rows, size);
+  stats.threads = static_cast<int>(std::min<std::int64_t>(wanted, tiles));
+  std::vector<std::unique_ptr<Renderer>> workers(static_cast<std::size_t>(stats.threads));
   for (auto& worker : workers)
     worker = std::make_unique<Renderer>(frame, options.timing, progress.stop);
 
-  ParallelFor(threads, columns * rows, [&](int worker, std::uint64_t item) {
-    if (progress.stop.load(std::memory_order_relaxed)) return;
-    PixelRect tile;
-    tile.x0 = area.x0 + static_cast<int>(item % columns) * size;
-    tile.y0 = area.y0 + static_cast<int>(item / columns) * size;
-    tile.x1 = std::min(tile.x0 + size, area.x1);
-    tile.y1 = std::min(tile.y0 + size, area.y1);
-    workers[static_cast<std::size_t>(worker)]->Render(tile, area.x0, area.y0, film);
-    progress.pixels_done.fetch_add(
-        static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()),
-        std::memory_order_relaxed);
-  });
+  BandQueue queue(sink, progress.stop);
+  Status status = Done{};
+  for (int y = area.y0; y < area.y1 && status; y += rows) {
+    const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};
+    const Clock::time_point start = Clock::now();
+    Film& film = queue.Front(band.width(), band.height());
+    RenderTiles(workers, band, size, film, progress);
+    stats.wall_seconds += SecondsSince(start);
 
+    status = queue.Wait();
+    if (status && progress.stop.load(std::memory_order_relaxed)) {
+      status = Error{ErrorKind::kInterrupted, "rendering was interrupted"};
+    }
+    if (!status) break;
+    // Nothing renders beside the last band's sink: it needs no thread of its own.
+    if (band.y1 == area.y1) {
+      status = queue.PushLast();
+    } else {
+      queue.Push();
+    }
+  }
   for (const auto& worker : workers) {
     stats.rays += worker->rays();
     for (int phase = 0; phase < static_cast<int>(Phase::kCount); ++phase) {
@@ -95,14 +149,14 @@ bool RenderTiles(const FrameView<Real>& frame, const PixelRect& area, const Rend
       stats.lane_use[phase] += worker->lane_use(static_cast<Phase>(phase));
     }
   }
-  stats.threads = threads;
-  return !progress.stop.load(std::memory_order_relaxed);
+  return status;
 }
 
 template <typename Real>
-Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect& area,
-                      const RenderOptions& options, RenderStats& stats, RenderProgress& progress) {
-  Clock::time_point start = Clock::now();
+Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                const BandSink& sink, RenderStats& stats, RenderProgress& progress) {
+  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+  const Clock::time_point start = Clock::now();
   CompiledScene<Real> compiled = CompileScene<Real>(scene);
   if (options.skips == Skips::kOff) {
     for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
@@ -135,15 +189,9 @@ Result<Film> RenderIn(const Scene& scene, const Camera& camera, const PixelRect&
   stats.primitives = compiled.sphere_count + compiled.triangle_count;
   stats.target = options.engine == Engine::kScalar ? "scalar" : simd::RunningTarget();
 
-  start = Clock::now();
-  Film film(area.width(), area.height());
-  const bool finished =
-      options.engine == Engine::kScalar
-          ? RenderTiles<ScalarTileRenderer<Real>>(frame, area, options, film, stats, progress)
-          : RenderTiles<TileRenderer<Real>>(frame, area, options, film, stats, progress);
-  stats.wall_seconds = SecondsSince(start);
-  if (!finished) return Error{ErrorKind::kInterrupted, "rendering was interrupted"};
-  return film;
+  return options.engine == Engine::kScalar
+             ? RenderBands<ScalarTileRenderer<Real>>(frame, area, options, sink, stats, progress)
+             : RenderBands<TileRenderer<Real>>(frame, area, options, sink, stats, progress);
 }
 
 // What is wrong with the options, or nothing.
@@ -157,6 +205,8 @@ std::string Complaint(const RenderOptions& options) {
   if (!within(options.samples, 1, kMaxSamples)) return out_of_range("samples", 1, kMaxSamples);
   if (!within(options.tile_size, 1, kMaxTileSize))
     return out_of_range("tile size", 1, kMaxTileSize);
+  if (!within(options.band_rows, 0, kMaxImageSide))
+    return out_of_range("band rows", 0, kMaxImageSide);
   if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
   if (!within(options.max_depth, 0, kMaxDepth)) return out_of_range("max depth", 0, kMaxDepth);
   if (!(options.min_weight >= 0 && options.min_weight <= 1)) return "min weight must lie in [0, 1]";
@@ -173,6 +223,26 @@ std::string Complaint(const RenderOptions& options) {
   return {};
 }
 
+// Checks the options and renders in the arithmetic that they ask for.
+Status RenderToSink(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                    const BandSink& sink, RenderStats* stats, RenderProgress* progress) {
+  if (const std::string complaint = Complaint(options); !complaint.empty()) {
+    return Error{ErrorKind::kUsage, complaint};
+  }
+  RenderStats ignored_stats;
+  RenderProgress ignored_progress;
+  RenderStats& kept_stats = stats ? *stats : ignored_stats;
+  RenderProgress& kept_progress = progress ? *progress : ignored_progress;
+  kept_stats = {};
+  switch (options.precision) {
+    case Precision::kDouble:
+      return RenderIn<double>(scene, camera, options, sink, kept_stats, kept_progress);
+    case Precision::kStrict:
+      break;
+  }
+  return RenderIn<float>(scene, camera, options, sink, kept_stats, kept_progress);
+}
+
 }  // namespace
 
 const char* PhaseName(Phase phase) {
@@ -183,22 +253,21 @@ const char* PhaseName(Phase phase) {
 
 Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
                     RenderStats* stats, RenderProgress* progress) {
-  if (const std::string complaint = Complaint(options); !complaint.empty()) {
-    return Error{ErrorKind::kUsage, complaint};
-  }
-  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
-  RenderStats ignored_stats;
-  RenderProgress ignored_progress;
-  RenderStats& kept_stats = stats ? *stats : ignored_stats;
-  RenderProgress& kept_progress = progress ? *progress : ignored_progress;
-  kept_stats = {};
-  switch (options.precision) {
-    case Precision::kDouble:
-      return RenderIn<double>(scene, camera, area, options, kept_stats, kept_progress);
-    case Precision::kStrict:
-      break;
-  }
-  return RenderIn<float>(scene, camera, area, options, kept_stats, kept_progress);
+  RenderOptions one_band = options;
+  one_band.band_rows = kMaxImageSide;
+  Film film;
+  const BandSink keep = [&film](Film& band) {
+    film = std::move(band);
+    return Status(Done{});
+  };
+  const Status rendered = RenderToSink(scene, camera, one_band, keep, stats, progress);
+  if (!rendered) return rendered.error();
+  return film;
+}
+
+Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                  const RowSink& sink, RenderStats* stats, RenderProgress* progress) {
+  return RenderToSink(scene, camera, options, sink, stats, progress);
 }
 
 }  // namespace sheaf

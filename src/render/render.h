@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -48,6 +49,7 @@ struct RenderOptions {
   Precision precision = Precision::kStrict;
   int threads = 0;     // 0: one a core
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
+  int band_rows = 0;   // of RenderRows: pixel rows a band, up to whole tiles; 0: chosen
   Skips skips = Skips::kOn;
   Timing timing = Timing::kOff;  // whether RenderStats::phase_seconds is filled
 };
@@ -78,7 +80,7 @@ struct LaneUse {
 
 struct RenderStats {
   RayCounts rays;
-  double wall_seconds = 0.0;     // of the frame, without scene compilation
+  double wall_seconds = 0.0;     // of the frame, without compilation and without waits for a sink
   double compile_seconds = 0.0;  // Scene to flat arrays
   double phase_seconds[static_cast<int>(Phase::kCount)] =
       {};                                                  // summed over threads; SIMD engine only
@@ -99,6 +101,17 @@ struct RenderProgress {
 // then.
 Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
                     RenderStats* stats = nullptr, RenderProgress* progress = nullptr);
+
+// Takes the next finished rows from the top, as wide as the picture or crop; `rows` lives as long
+// as the call. Calls come in order, one at a time, from any thread.
+using RowSink = std::function<Status(const Film& rows)>;
+
+// Renders as Render does, the same bits, in bands of rows that leave memory as they are finished:
+// it holds two bands of about 32 MiB, while one renders the sink has the other. A sink that fails
+// ends the frame: its error is returned, and progress->stop is set.
+Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                  const RowSink& sink, RenderStats* stats = nullptr,
+                  RenderProgress* progress = nullptr);
 
 }  // namespace sheaf
 
