@@ -301,7 +301,6 @@ TEST_CASE("a picture without its Finish does not appear, and the old one stays")
       Result<PictureWriter> writer = PictureWriter::Create(path, 30, 20, Transfer::kLinear);
       REQUIRE(writer.ok());
       REQUIRE(writer.value().WriteRows(RowsOf(film, 0, 13)).ok());
-      CHECK(folder.FileCount() == count + 1);  // the temporary
     }
     CHECK(folder.FileCount() == count);
     CHECK(ReadText(old) == "the old picture");
@@ -455,7 +454,7 @@ TEST_CASE("a file appears at Commit and not before") {
     Result<AtomicFile> abandoned = AtomicFile::Create(path);
     REQUIRE(abandoned.ok());
     REQUIRE(abandoned.value().Write("never", 5).ok());
-    CHECK(folder.FileCount() == 2);
+    CHECK(folder.FileCount() <= 2);  // a hidden temporary where the system has no nameless ones
     const AtomicFile moved = std::move(abandoned).value();
   }
   CHECK(ReadText(path) == "new");

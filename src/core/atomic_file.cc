@@ -15,11 +15,11 @@
 namespace sheaf {
 namespace {
 
-enum class Kind { kAbsent, kRegular, kStream };
+enum class PathKind { kAbsent, kRegular, kStream };
 
 // What a path leads to, and how to write there.
 struct Destination {
-  Kind kind;
+  PathKind kind;
   std::string path;    // symbolic links followed, so that a link is kept and its file replaced
   std::string folder;  // ends in '/'
   mode_t mode;         // of the regular file that is there
@@ -43,19 +43,29 @@ Result<Destination> Resolve(const std::string& path) {
   if (exists && S_ISDIR(status.st_mode)) {
     return Error{ErrorKind::kInputOutput, path + ": is a folder"};
   }
-  Destination destination{Kind::kAbsent, path, "", 0};
+  Destination destination{PathKind::kAbsent, path, "", 0};
   if (exists) {
     destination.kind =
-        S_ISREG(status.st_mode) && !NamesDevice(path) ? Kind::kRegular : Kind::kStream;
+        S_ISREG(status.st_mode) && !NamesDevice(path) ? PathKind::kRegular : PathKind::kStream;
     destination.mode = status.st_mode & 07777;
     const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr),
                                                            &std::free);
     // A pipe behind /proc/self/fd has no real path; it is opened by the one it has.
-    if (real && destination.kind == Kind::kRegular) destination.path = real.get();
+    if (real && destination.kind == PathKind::kRegular) destination.path = real.get();
   }
   destination.folder = destination.path.substr(0, destination.path.rfind('/') + 1);
   if (destination.folder.empty()) destination.folder = "./";
   return destination;
+}
+
+// A file that no folder lists; -1 where the system has none, or no way to name it later.
+int OpenNameless(const std::string& folder) {
+#ifdef O_TMPFILE
+  if (access("/proc/self/fd", X_OK) != 0) return -1;
+  return open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+#else
+  return -1;
+#endif
 }
 
 // Short whatever the file is called, because a name near the system's limit leaves no room to add.
@@ -64,16 +74,28 @@ std::string TemporaryName(const std::string& folder) {
   return folder + ".sheaf-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
 }
 
+// Calls `create`, which is negative where it fails, with new names in `name` until one is free: a
+// killed process of the same id may have left some behind. An errno, or 0.
+template <typename CreateFile>
+int TryNames(const std::string& folder, std::string& name, const CreateFile& create) {
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    name = TemporaryName(folder);
+    if (create() >= 0) return 0;
+    if (errno != EEXIST) return errno;
+  }
+  return EEXIST;
+}
+
 }  // namespace
 
 Status CheckWritable(const std::string& path) {
   const Result<Destination> resolved = Resolve(path);
   if (!resolved) return resolved.error();
   const Destination& destination = resolved.value();
-  if (destination.kind != Kind::kAbsent && access(destination.path.c_str(), W_OK) != 0) {
+  if (destination.kind != PathKind::kAbsent && access(destination.path.c_str(), W_OK) != 0) {
     return InputOutput(path, "cannot be written", errno);
   }
-  if (destination.kind == Kind::kStream) return Done{};
+  if (destination.kind == PathKind::kStream) return Done{};
   struct stat status;
   if (stat(destination.folder.c_str(), &status) != 0) {
     return InputOutput(path, "its folder", errno);
@@ -84,15 +106,17 @@ Status CheckWritable(const std::string& path) {
   return Done{};
 }
 
-AtomicFile::AtomicFile(int descriptor, std::string path, std::string destination,
+AtomicFile::AtomicFile(int descriptor, Kind kind, std::string path, std::string destination,
                        std::string temporary)
     : descriptor_(descriptor),
+      kind_(kind),
       path_(std::move(path)),
       destination_(std::move(destination)),
       temporary_(std::move(temporary)) {}
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
+      kind_(other.kind_),
       path_(std::move(other.path_)),
       destination_(std::move(other.destination_)),
       temporary_(std::move(other.temporary_)) {}
@@ -100,7 +124,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   close(descriptor_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (kind_ == Kind::kNamed) unlink(temporary_.c_str());
 }
 
 Result<AtomicFile> AtomicFile::Create(const std::string& path) {
@@ -110,26 +134,28 @@ Result<AtomicFile> AtomicFile::Create(const std::string& path) {
   if (!resolved) return resolved.error();
   const Destination& destination = resolved.value();
 
-  if (destination.kind == Kind::kStream) {
+  if (destination.kind == PathKind::kStream) {
     // Append: where /dev/stdout leads to a file, what is in it already stays.
     const int descriptor =
         open(destination.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
     if (descriptor < 0) return InputOutput(path, "cannot be opened", errno);
-    return AtomicFile(descriptor, path, destination.path, "");
+    return AtomicFile(descriptor, Kind::kStream, path, destination.path, "");
   }
 
-  // O_EXCL with 0666 lets the user's umask decide, which mkstemp would not. A name that a killed
-  // process of the same id left behind is passed over.
-  int descriptor = -1;
-  std::string temporary;
-  for (int attempt = 0; attempt < 100 && descriptor < 0; ++attempt) {
-    temporary = TemporaryName(destination.folder);
-    descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno != EEXIST) break;
+  // 0666 lets the user's umask decide, which mkstemp would not.
+  Kind kind = Kind::kNameless;
+  std::string temporary = TemporaryName(destination.folder);
+  int descriptor = OpenNameless(destination.folder);
+  if (descriptor < 0) {
+    kind = Kind::kNamed;
+    const int code = TryNames(destination.folder, temporary, [&] {
+      descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      return descriptor;
+    });
+    if (code != 0) return InputOutput(path, "cannot be created", code);
   }
-  if (descriptor < 0) return InputOutput(path, "cannot be created", errno);
-  AtomicFile file(descriptor, path, destination.path, temporary);
-  if (destination.kind == Kind::kRegular && fchmod(descriptor, destination.mode) != 0) {
+  AtomicFile file(descriptor, kind, path, destination.path, temporary);
+  if (destination.kind == PathKind::kRegular && fchmod(descriptor, destination.mode) != 0) {
     return InputOutput(path, "cannot keep its permissions", errno);
   }
   return file;
@@ -166,16 +192,25 @@ Status AtomicFile::WriteAt(std::uint64_t offset, const void* data, std::size_t s
   });
 }
 
+int AtomicFile::Link() {
+  const std::string descriptor = "/proc/self/fd/" + std::to_string(descriptor_);
+  const std::string folder = temporary_.substr(0, temporary_.rfind('/') + 1);
+  return TryNames(folder, temporary_, [&] {
+    return linkat(AT_FDCWD, descriptor.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW);
+  });
+}
+
 Status AtomicFile::Commit() {
   assert(descriptor_ >= 0);
   // close() may report a late write error (quota, network file system); the file is then not whole.
-  int code = close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno;
-  if (temporary_.empty()) {
+  const int link_code = kind_ == Kind::kNameless ? Link() : 0;
+  int code = close(std::exchange(descriptor_, -1)) == 0 ? link_code : errno;
+  if (kind_ == Kind::kStream) {
     return code == 0 ? Status(Done{}) : InputOutput(path_, "cannot be written", code);
   }
   if (code == 0 && std::rename(temporary_.c_str(), destination_.c_str()) != 0) code = errno;
   if (code == 0) return Done{};
-  unlink(temporary_.c_str());
+  if (link_code == 0) unlink(temporary_.c_str());
   return InputOutput(path_, "cannot be written", code);
 }
 

@@ -15,9 +15,11 @@ namespace sheaf {
 // writable file or a device. kInputOutput otherwise. Meant for a check before long work.
 Status CheckWritable(const std::string& path);
 
-// Bytes go to a hidden temporary in the folder of `path`; Commit() renames it, so that a reader
-// sees the old file or the new one. Without a Commit the temporary is removed and the old file
-// stays. Pipes and devices (anything under /dev) have no whole to protect: bytes go straight there.
+// Bytes go to a temporary in the folder of `path`; Commit() renames it, so that a reader sees the
+// old file or the new one. The temporary has no name before that, and vanishes however the process
+// ends, but on file systems that know no such files: there it is hidden, and removed without a
+// Commit. Pipes and devices (anything under /dev) have no whole to protect: bytes go straight
+// there.
 class AtomicFile {
  public:
   static Result<AtomicFile> Create(const std::string& path);
@@ -27,7 +29,7 @@ class AtomicFile {
   ~AtomicFile();
 
   // Whether WriteAt may be called: pipes and devices take bytes in their order alone.
-  bool seekable() const { return !temporary_.empty(); }
+  bool seekable() const { return kind_ != Kind::kStream; }
 
   // After a failed Write or WriteAt the only call left is the destructor.
   Status Write(const void* data, std::size_t size);
@@ -37,14 +39,20 @@ class AtomicFile {
   Status Commit();
 
  private:
-  AtomicFile(int descriptor, std::string path, std::string destination, std::string temporary);
+  enum class Kind { kStream, kNamed, kNameless };
+
+  AtomicFile(int descriptor, Kind kind, std::string path, std::string destination,
+             std::string temporary);
+  // Gives a nameless file the name `temporary_`; an errno, or 0.
+  int Link();
   template <typename WriteSome>
   Status WriteAll(std::size_t size, const WriteSome& write_some);
 
   int descriptor_;           // -1 once committed or moved from
+  Kind kind_;                // of the temporary, or kStream where there is none
   std::string path_;         // as the caller spelled it, for messages
   std::string destination_;  // where the rename goes: `path_` with symbolic links followed
-  std::string temporary_;    // empty where bytes go straight to the destination
+  std::string temporary_;    // its name; of a nameless one the name that it will have
 };
 
 // Create, Write and Commit in one.

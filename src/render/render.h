@@ -107,8 +107,8 @@ Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOption
 using RowSink = std::function<Status(const Film& rows)>;
 
 // Renders as Render does, the same bits, in bands of rows that leave memory as they are finished:
-// it holds two bands of about 32 MiB, while one renders the sink has the other. A sink that fails
-// ends the frame: its error is returned, and progress->stop is set.
+// it holds two bands of about 2 MiB, or a row of tiles; while one renders the sink has the other. A
+// sink that fails ends the frame: its error is returned, and progress->stop is set.
 Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
                   const RowSink& sink, RenderStats* stats = nullptr,
                   RenderProgress* progress = nullptr);
