@@ -1,16 +1,23 @@
-// Whole frames: the scalar baseline and every usable SIMD target, one thread,
-// building the tree and writing the picture excluded. Run with
-// --benchmark_enable_random_interleaving for ratios (docs/benchmarking.md).
+// Whole frames: the scalar baseline and every usable SIMD target, POV-Ray where it is installed,
+// and what each feature of a scene costs. One thread; building the tree and writing the picture
+// excluded. Run with --benchmark_enable_random_interleaving for ratios (docs/benchmarking.md).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bench/frame_scenes.h"
+#include "bench/write_pov.h"
 #include "simd/target.h"
+#include "src/core/atomic_file.h"
 #include "src/formats/scene_json.h"
 #include "src/render/render.h"
 
@@ -20,26 +27,148 @@ using namespace sheaf;  // NOLINT: a program of its own
 
 // Renders `camera` with one sample a pixel, as often as the benchmark asks.
 void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& camera,
-                 const std::string& target) {
+                 const std::string& target, Skips skips) {
   RenderOptions options;
   options.width = scene.settings.width;
   options.height = scene.settings.height;
   options.max_depth = scene.settings.max_depth;
   options.threads = 1;
+  options.skips = skips;
   options.engine = target == "scalar" ? Engine::kScalar : Engine::kSimd;
   if (options.engine == Engine::kSimd && !simd::ForceTarget(target)) {
     state.SkipWithError("the target is not usable");
     return;
   }
+  // As the command does it, but for the writing.
+  const RowSink drop = [](const Film& rows) {
+    benchmark::DoNotOptimize(rows.rgb.data());
+    return Status(Done{});
+  };
   RenderStats stats;
   for (auto _ : state) {
-    const Result<Film> film = Render(scene, camera, options, &stats);
-    benchmark::DoNotOptimize(film.value().rgb.data());
+    if (!RenderRows(scene, camera, options, drop, &stats)) {
+      state.SkipWithError("rendering failed");
+      return;
+    }
     state.SetIterationTime(stats.wall_seconds);
   }
   if (stats.target != target) state.SkipWithError("another target ran");
   state.counters["Mray/s"] = benchmark::Counter(static_cast<double>(stats.rays.traced()) * 1e-6,
                                                 benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void Register(const std::string& name, std::function<void(benchmark::State&)> run) {
+  benchmark::RegisterBenchmark(name.c_str(), std::move(run))
+      ->Unit(benchmark::kMillisecond)
+      ->UseManualTime();
+}
+
+// ---- POV-Ray ----
+
+bool HasPovRay() { return std::system("command -v povray >/dev/null 2>&1") == 0; }
+
+// The processor seconds that POV-Ray says it traced for, without parsing; nothing where it failed.
+std::optional<double> PovSeconds(const std::string& path, int width, int height) {
+  const std::string command =
+      fmt::format("povray +I'{}' +W{} +H{} -A -D -F +WT1 2>&1", path, width, height);
+  std::FILE* output = popen(command.c_str(), "r");
+  if (output == nullptr) return std::nullopt;
+  std::optional<double> seconds;
+  bool in_trace = false;
+  std::array<char, 512> line;
+  while (std::fgets(line.data(), line.size(), output) != nullptr) {
+    // "Trace Time: ..." is followed by "using 1 thread(s) with 0.845 CPU-seconds total".
+    const std::string text = line.data();
+    if (text.find("Time:") != std::string::npos) {
+      in_trace = text.find("Trace Time:") != std::string::npos;
+    }
+    double value = 0;
+    const std::size_t at = text.find("with ");
+    if (in_trace && at != std::string::npos &&
+        std::sscanf(text.c_str() + at, "with %lf CPU-seconds", &value) == 1) {
+      seconds = value;
+    }
+  }
+  return pclose(output) == 0 ? seconds : std::nullopt;
+}
+
+void RenderWithPovRay(benchmark::State& state, const Scene& scene, const Camera& camera) {
+  const std::string path = fmt::format("{}/sheaf-frame-bench.pov", P_tmpdir);
+  if (!WriteFileWhole(path, bench::PovText(scene, camera))) {
+    state.SkipWithError("the scene cannot be written");
+    return;
+  }
+  for (auto _ : state) {
+    const std::optional<double> seconds =
+        PovSeconds(path, scene.settings.width, scene.settings.height);
+    if (!seconds) {
+      state.SkipWithError("POV-Ray failed");
+      break;
+    }
+    state.SetIterationTime(*seconds);
+  }
+  std::remove(path.c_str());
+}
+
+// ---- What a feature costs ----
+
+struct Feature {
+  const char* name;
+  void (*remove)(Scene& scene);
+};
+
+constexpr Feature kFeatures[] = {
+    {"transmission",
+     [](Scene& scene) {
+       for (Material& material : scene.materials) material.transmit = Colour(0.0);
+     }},
+    {"reflection",
+     [](Scene& scene) {
+       for (Material& material : scene.materials) material.reflect = Colour(0.0);
+     }},
+    {"highlights",
+     [](Scene& scene) {
+       for (Material& material : scene.materials) material.ks = 0;
+     }},
+    {"checker",
+     [](Scene& scene) {
+       for (Material& material : scene.materials) {
+         const auto* checker = std::get_if<Checker>(&material.base_colour);
+         if (checker != nullptr) material.base_colour = Colour(checker->even);
+       }
+     }},
+    {"shadows",
+     [](Scene& scene) {
+       for (Light& light : scene.lights) light.casts_shadows = false;
+     }},
+    {"lights", [](Scene& scene) { scene.lights.clear(); }},
+};
+
+// `scene` as it is, without the feature, and the same with what could be skipped computed.
+void RegisterFeature(const std::string& name, const Scene& with, const Scene& without,
+                     const std::string& target) {
+  const auto add = [&](const char* row, const Scene& scene, Skips skips) {
+    Register(fmt::format("Feature/{}/{}", name, row),
+             [scene, target, skips](benchmark::State& state) {
+               RenderFrame(state, scene, scene.cameras.at(0), target, skips);
+             });
+  };
+  add("with", with, Skips::kOn);
+  add("without", without, Skips::kOn);
+  add("forced", without, Skips::kOff);
+}
+
+void RegisterFeatures(const Scene& crystal_ball, const std::string& target) {
+  Scene with = crystal_ball;
+  for (Material& material : with.materials) material.reflect = Colour(0.2);
+  Scene bare = with;
+  for (const Feature& feature : kFeatures) {
+    Scene without = with;
+    feature.remove(without);
+    feature.remove(bare);
+    RegisterFeature(feature.name, with, without, target);
+  }
+  RegisterFeature("everything", with, bare, target);
 }
 
 }  // namespace
@@ -59,19 +188,24 @@ int main(int argc, char** argv) {
   for (const bench::FrameScene& frame : bench::FrameScenes()) {
     scenes.emplace_back(frame.name, frame.make());
   }
+  const bool has_pov_ray = HasPovRay();
+  if (!has_pov_ray) fmt::print(stderr, "frame_bench: povray is not installed: no rows of it\n");
   for (const auto& [title, shown] : scenes) {
     for (const Camera& camera : shown.cameras) {
+      const std::string row = fmt::format("Frame/{}/{}/", title, camera.name);
       for (const std::string& target : targets) {
-        const std::string name = fmt::format("Frame/{}/{}/{}", title, camera.name, target);
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [&shown, &camera, target](benchmark::State& state) {
-                                       RenderFrame(state, shown, camera, target);
-                                     })
-            ->Unit(benchmark::kMillisecond)
-            ->UseManualTime();
+        Register(row + target, [&shown, &camera, target](benchmark::State& state) {
+          RenderFrame(state, shown, camera, target, Skips::kOn);
+        });
+      }
+      if (has_pov_ray) {
+        Register(row + "povray", [&shown, &camera](benchmark::State& state) {
+          RenderWithPovRay(state, shown, camera);
+        });
       }
     }
   }
+  RegisterFeatures(crystal_ball, targets.front());
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
   benchmark::RunSpecifiedBenchmarks();

@@ -1,4 +1,4 @@
-// Writes one of the frame scenes as scene JSON, for `sheaf render`.
+// Writes one of the frame scenes as scene JSON, for `sheaf render`, or for POV-Ray.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bench/frame_scenes.h"
+#include "bench/write_pov.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/write_scene_json.h"
 
@@ -16,10 +17,11 @@ int main(int argc, char** argv) {
   const auto scenes = sheaf::bench::FrameScenes();
   CLI::App app("Writes one of the scenes that whole frames are timed on, as scene JSON.");
   std::string name, output;
-  bool lists = false;
+  bool lists = false, for_pov = false;
   auto* list = app.add_flag("--list", lists, "the scenes");
   app.add_option("NAME", name, "the scene")->excludes(list);
   app.add_option("-o,--output", output, "the file; stdout if absent")->option_text("FILE");
+  app.add_flag("--pov", for_pov, "for POV-Ray 3.7 instead");
   try {
     app.parse(argc, argv);
     if (!lists && name.empty()) throw CLI::RequiredError("NAME");
@@ -39,7 +41,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "make_scene: unknown scene \"{}\"; --list shows them\n", name);
     return 2;
   }
-  const std::string text = sheaf::SceneJsonText(found->make());
+  const sheaf::Scene scene = found->make();
+  const std::string text =
+      for_pov ? sheaf::bench::PovText(scene, scene.cameras.at(0)) : sheaf::SceneJsonText(scene);
   if (output.empty()) {
     const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     return written ? EXIT_SUCCESS : 4;

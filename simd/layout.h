@@ -259,7 +259,7 @@ struct TreeView {
   const std::uint32_t* triangle_id;  // primitive id by position
   const std::uint32_t* sphere_id;
   float lower[3], upper[3];  // of all boxes; lower > upper without primitives
-  bool skips_boxes;          // so few primitives that boxes do not pay; set where there is no node
+  bool skips_boxes;  // so few primitives that boxes pay for tiles alone; set where there is no node
 };
 
 // Whether box tests hold for the tree.

@@ -48,8 +48,8 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Tile<Real> tile;
   StrayRays strays;
-  const bool may_be_tile =
-      coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin;
+  const bool may_be_tile = tree.node_count > 0 && (coherence == Coherence::kUnknown ||
+                                                   coherence == Coherence::kCommonOrigin);
   const bool may_be_sheet = coherence == Coherence::kUnknown;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
     tile.count = 0;
@@ -58,12 +58,12 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
       LoadPacket(rays, intervals, i, count, packet);
       PrepareLeafTerms(tree, packet);
     }
-    if (tree.skips_boxes) {
+    if (may_be_tile && PrepareTile(tree, tile)) {
+      TraceTile<kQuery>(tree, tile);
+    } else if (tree.skips_boxes) {
       for (std::uint32_t k = 0; k < tile.count; ++k) {
         TraceEveryLeaf<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]));
       }
-    } else if (may_be_tile && PrepareTile(tree, tile)) {
-      TraceTile<kQuery>(tree, tile);
     } else if (may_be_sheet && PrepareSheet(tree, tile)) {
       TraceSheet<kQuery>(tree, tile);
     } else {

@@ -163,12 +163,45 @@ TEST_CASE("help and version go to stdout") {
   const Outcome options = work.Run({"render", "--help"});
   for (const char* option :
        {"--camera", "--views", "-o", "--size", "--spp", "--max-depth", "--target", "--precision",
-        "--threads", "--tile", "--crop", "--progress", "-q", "--json"}) {
+        "--threads", "--tile", "--crop", "--aov", "--progress", "-q", "--json"}) {
     CHECK_MESSAGE(Contains(options.out, option), std::string(option));
   }
   const Outcome version = work.Run({"--version"});
   CHECK(version.code == 0);
   CHECK(version.out == std::string("sheaf ") + kVersion + "\n");
+}
+
+TEST_CASE("--aov heat shows rays and lanes of each tile") {
+  const Workspace work;
+  const std::string pfm = work / "a.pfm";
+  const std::vector<std::string> render = {"render", kScene,  "--size", "50x40", "--tile",
+                                           "16",     "--aov", "heat",   "-q"};
+  auto arguments = render;
+  arguments.insert(arguments.end(), {"--crop", "7,3,50,40", "-o", pfm, "--json"});
+  const Outcome outcome = work.Run(arguments);
+  REQUIRE(outcome.code == 0);
+  CHECK(work.Files() == std::vector<std::string>{"a.heat.pfm", "a.pfm"});
+  const Result<Film> heat = ReadPfm(work / "a.heat.pfm");
+  REQUIRE(heat.ok());
+  REQUIRE(heat.value().width == 43);
+  REQUIRE(heat.value().height == 37);
+  double rays = 0;
+  for (std::size_t i = 0; i < heat.value().rgb.size(); i += 3) {
+    const float* pixel = &heat.value().rgb[i];
+    CHECK(pixel[0] > 0);
+    CHECK(pixel[1] > 0);
+    CHECK(pixel[1] <= 1);
+    rays += static_cast<double>(pixel[2]);
+  }
+  // Each pixel has its tile's mean, so that the sum is the frame's count.
+  const json statistics = json::parse(outcome.out);
+  CHECK(rays == doctest::Approx(statistics["frames"][0]["rays"]["traced"].get<double>()));
+
+  arguments = render;
+  arguments.insert(arguments.end(), {"-o", work / "a.png", "--json=" + (work / "a.heat.png")});
+  const Outcome clash = work.Run(arguments);
+  CHECK(clash.code == 2);
+  CHECK(Contains(clash.err, "same path"));
 }
 
 TEST_CASE("without arguments the help goes to stderr, and the code is 2") {

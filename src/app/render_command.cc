@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "simd/target.h"
+#include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
@@ -29,6 +30,7 @@ constexpr std::string_view kCameraField = "{camera}";
 struct Frame {
   const Camera* camera;
   std::string path;
+  std::string heat_path;  // empty: none
 };
 
 Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
@@ -147,6 +149,10 @@ Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& 
   for (const Frame& frame : frames) {
     if (IsSameFile(frame.path, request.scene)) return clash("-o", frame.path);
     if (IsSameFile(frame.path, request.statistics)) return clash("--json", request.statistics);
+    if (frame.heat_path.empty()) continue;
+    for (const std::string& other : {request.scene, request.statistics}) {
+      if (IsSameFile(frame.heat_path, other)) return clash("--aov heat", frame.heat_path);
+    }
   }
   return Done{};
 }
@@ -207,7 +213,11 @@ Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene&
     const Result<std::string> path = ExpandPath(request.output, camera->name);
     if (!path) return path.error();
     if (const Status writable = CheckWritable(path.value()); !writable) return writable.error();
-    frames.push_back({camera, path.value()});
+    const std::string heat_path = request.layers.empty() ? "" : HeatPath(path.value());
+    if (!heat_path.empty()) {
+      if (const Status writable = CheckWritable(heat_path); !writable) return writable.error();
+    }
+    frames.push_back({camera, path.value(), heat_path});
   }
   return frames;
 }
@@ -226,6 +236,7 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
   options.threads = request.threads.value_or(options.threads);
   options.tile_size = request.tile_size.value_or(options.tile_size);
+  options.tile_costs = request.layers.empty() ? TileCosts::kOff : TileCosts::kOn;
   options.timing = request.statistics.empty() ? Timing::kOff : Timing::kOn;
   if (options.crop && (options.crop->x1 > size.width || options.crop->y1 > size.height)) {
     return Usage(fmt::format("--crop: {},{},{},{} is not inside the picture of {}x{}",
@@ -269,8 +280,11 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const Frame& frame,
   }
   if (!rendered) return rendered.error();
   watch.Finish(record.stats);
-  const Status written = writer.value().Finish();
-  if (!written) return written.error();
+  if (const Status written = writer.value().Finish(); !written) return written.error();
+  if (!frame.heat_path.empty()) {
+    const Status written = WriteHeatPicture(options, record.stats, frame.heat_path);
+    if (!written) return written.error();
+  }
   return record;
 }
 
@@ -312,6 +326,11 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   render->add_option("--precision", request.precision, "Arithmetic")
       ->option_text("strict|double")
       ->check(CLI::IsMember({"strict", "double"}));
+  AddParsed(*render, "--aov", request.layers, "heat", "a layer; there is heat",
+            "Beside the picture PATH one of costs: time, live lanes and rays of each tile",
+            [](const std::string& text) {
+              return text == "heat" ? std::optional(std::vector{text}) : std::nullopt;
+            });
   AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
   AddInteger(*render, "--tile", request.tile_size, 1, kMaxTileSize,
              "Pixels a side of a tile; changes no picture");
@@ -347,7 +366,9 @@ Status RunRender(const RenderRequest& request) {
     Result<FrameRecord> record = RenderFrame(scene.value(), frame, options.value(), style, label);
     if (!record) return record.error();
     // Not fmt::print: it throws where stderr is gone, which is no reason to stop.
-    if (!request.quiet) std::fprintf(stderr, "wrote %s\n", frame.path.c_str());
+    for (const std::string& path : {frame.path, frame.heat_path}) {
+      if (!request.quiet && !path.empty()) std::fprintf(stderr, "wrote %s\n", path.c_str());
+    }
     records.push_back(std::move(record).value());
   }
   return WriteStatistics(request.statistics, StatisticsJson(request.scene, records));

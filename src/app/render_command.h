@@ -29,6 +29,7 @@ struct RenderRequest {
   std::string precision = "strict";
   std::optional<int> threads, tile_size;
   std::optional<PixelRect> crop;
+  std::vector<std::string> layers;  // of --aov
   std::string progress = "auto";
   bool quiet = false;
   std::string statistics;  // empty: none; "-": stdout; else a file

@@ -86,10 +86,40 @@ int BandRows(const PixelRect& area, const RenderOptions& options, int threads) {
   return CeilDivide(all, CeilDivide(all, tile_rows)) * size;
 }
 
+// One thread's renderer, and what its tiles took, where that is asked for.
+template <typename Renderer>
+struct Worker {
+  Renderer renderer;
+  std::vector<TileCost> tiles;
+
+  LaneUse lane_use() const {
+    LaneUse sum;
+    for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
+      sum += renderer.lane_use(static_cast<Phase>(i));
+    }
+    return sum;
+  }
+
+  void RenderWithCost(const PixelRect& tile, int film_x, int film_y, Film& film) {
+    const std::uint64_t rays = renderer.rays().traced();
+    const LaneUse use = lane_use();
+    const Clock::time_point start = Clock::now();
+    renderer.Render(tile, film_x, film_y, film);
+    const double seconds = SecondsSince(start);
+    const LaneUse now = lane_use();
+    tiles.push_back({tile,
+                     renderer.rays().traced() - rays,
+                     {now.batches - use.batches, now.live - use.live, now.lanes - use.lanes},
+                     seconds});
+  }
+};
+
 // Hands the tiles of `band` to the workers until all are done or a stop is asked for.
 template <typename Renderer>
-void RenderTiles(const std::vector<std::unique_ptr<Renderer>>& workers, const PixelRect& band,
-                 int size, Film& film, RenderProgress& progress) {
+void RenderTiles(const std::vector<std::unique_ptr<Worker<Renderer>>>& workers,
+                 const PixelRect& band, const RenderOptions& options, Film& film,
+                 RenderProgress& progress) {
+  const int size = options.tile_size;
   const auto columns = static_cast<std::uint64_t>(CeilDivide(band.width(), size));
   const auto rows = static_cast<std::uint64_t>(CeilDivide(band.height(), size));
   ParallelFor(
@@ -100,7 +130,12 @@ void RenderTiles(const std::vector<std::unique_ptr<Renderer>>& workers, const Pi
         tile.y0 = band.y0 + static_cast<int>(item / columns) * size;
         tile.x1 = std::min(tile.x0 + size, band.x1);
         tile.y1 = std::min(tile.y0 + size, band.y1);
-        workers[static_cast<std::size_t>(worker)]->Render(tile, band.x0, band.y0, film);
+        Worker<Renderer>& chosen = *workers[static_cast<std::size_t>(worker)];
+        if (options.tile_costs == TileCosts::kOn) {
+          chosen.RenderWithCost(tile, band.x0, band.y0, film);
+        } else {
+          chosen.renderer.Render(tile, band.x0, band.y0, film);
+        }
         progress.pixels_done.fetch_add(
             static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()),
             std::memory_order_relaxed);
@@ -117,9 +152,10 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
   const int rows = BandRows(area, options, wanted);
   const std::int64_t tiles = std::int64_t{CeilDivide(area.width(), size)} * CeilDivide(rows, size);
   stats.threads = static_cast<int>(std::min<std::int64_t>(wanted, tiles));
-  std::vector<std::unique_ptr<Renderer>> workers(static_cast<std::size_t>(stats.threads));
-  for (auto& worker : workers)
-    worker = std::make_unique<Renderer>(frame, options.timing, progress.stop);
+  std::vector<std::unique_ptr<Worker<Renderer>>> workers(static_cast<std::size_t>(stats.threads));
+  for (auto& worker : workers) {
+    worker.reset(new Worker<Renderer>{Renderer(frame, options.timing, progress.stop), {}});
+  }
 
   BandQueue queue(sink, progress.stop);
   Status status = Done{};
@@ -127,7 +163,7 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
     const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};
     const Clock::time_point start = Clock::now();
     Film& film = queue.Front(band.width(), band.height());
-    RenderTiles(workers, band, size, film, progress);
+    RenderTiles(workers, band, options, film, progress);
     stats.wall_seconds += SecondsSince(start);
 
     status = queue.Wait();
@@ -143,10 +179,12 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
     }
   }
   for (const auto& worker : workers) {
-    stats.rays += worker->rays();
+    const Renderer& renderer = worker->renderer;
+    stats.rays += renderer.rays();
+    stats.tiles.insert(stats.tiles.end(), worker->tiles.begin(), worker->tiles.end());
     for (int phase = 0; phase < static_cast<int>(Phase::kCount); ++phase) {
-      stats.phase_seconds[phase] += worker->phase_seconds(static_cast<Phase>(phase));
-      stats.lane_use[phase] += worker->lane_use(static_cast<Phase>(phase));
+      stats.phase_seconds[phase] += renderer.phase_seconds(static_cast<Phase>(phase));
+      stats.lane_use[phase] += renderer.lane_use(static_cast<Phase>(phase));
     }
   }
   return status;

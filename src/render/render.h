@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "src/core/error.h"
 #include "src/scalar/ray_counts.h"
@@ -27,6 +28,8 @@ enum class Engine {
 };
 
 enum class Timing { kOff, kOn };
+
+enum class TileCosts { kOff, kOn };
 
 // Whether work that a scene does not need is left out. It changes no bit; tests see to that.
 enum class Skips { kOn, kOff };
@@ -51,7 +54,8 @@ struct RenderOptions {
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
   int band_rows = 0;   // of RenderRows: pixel rows a band, up to whole tiles; 0: chosen
   Skips skips = Skips::kOn;
-  Timing timing = Timing::kOff;  // whether RenderStats::phase_seconds is filled
+  Timing timing = Timing::kOff;            // whether RenderStats::phase_seconds is filled
+  TileCosts tile_costs = TileCosts::kOff;  // whether RenderStats::tiles is
 };
 
 enum class Phase {
@@ -78,6 +82,14 @@ struct LaneUse {
   }
 };
 
+// What one tile took.
+struct TileCost {
+  PixelRect tile;  // in picture coordinates
+  std::uint64_t rays = 0;
+  LaneUse lane_use;  // of all phases; SIMD engine only
+  double seconds = 0;
+};
+
 struct RenderStats {
   RayCounts rays;
   double wall_seconds = 0.0;     // of the frame, without compilation and without waits for a sink
@@ -85,6 +97,7 @@ struct RenderStats {
   double phase_seconds[static_cast<int>(Phase::kCount)] =
       {};                                                  // summed over threads; SIMD engine only
   LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};  // summed over threads; SIMD engine only
+  std::vector<TileCost> tiles;                             // thread by thread
   int threads = 0;                                         // that took part
   std::string target;  // what ran: "scalar" or a SIMD target's name
   std::uint32_t primitives = 0, spheres = 0, triangles = 0;

@@ -1,0 +1,150 @@
+#include "bench/write_pov.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <iterator>
+#include <variant>
+
+namespace sheaf::bench {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+std::string Vector(const Vec3d& v) { return fmt::format("<{}, {}, {}>", v.x, v.y, v.z); }
+
+bool Transmits(const Material& material) { return glm::length(material.transmit) > 0; }
+
+std::string Finish(const Scene& scene, const Material& material) {
+  const Vec3d ambient =
+      material.ambient * scene.settings.ambient.value_or(scene.settings.background);
+  std::string finish =
+      fmt::format("finish {{ ambient rgb {} diffuse {} specular {} roughness {}", Vector(ambient),
+                  material.kd, material.ks, 1 / std::max(material.shininess, 1e-3));
+  if (Transmits(material)) {
+    finish += " reflection { 0, 1 fresnel on } conserve_energy";
+  } else if (glm::length(material.reflect) > 0) {
+    finish += fmt::format(" reflection {{ rgb {} }}", Vector(material.reflect));
+  }
+  return finish + " }";
+}
+
+// POV-Ray's checker fills unit cubes of space; the middle of one layer of them is put on the quad.
+std::string CheckerPigment(const Checker& checker, const Quad* quad) {
+  std::string pattern =
+      fmt::format("pigment {{ checker rgb {} rgb {}", Vector(checker.even), Vector(checker.odd));
+  if (quad != nullptr) {
+    const Vec3d u = (quad->corners[1] - quad->corners[0]) / checker.cells.x;
+    const Vec3d v = (quad->corners[3] - quad->corners[0]) / checker.cells.y;
+    const Vec3d n = glm::normalize(glm::cross(u, v));
+    const Vec3d origin = quad->corners[0] - 0.5 * n;
+    pattern += fmt::format(" matrix <{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}>", u.x, u.y,
+                           u.z, n.x, n.y, n.z, v.x, v.y, v.z, origin.x, origin.y, origin.z);
+  }
+  return pattern + " }";
+}
+
+std::string Pigment(const Material& material, const Quad* quad) {
+  if (const auto* checker = std::get_if<Checker>(&material.base_colour)) {
+    return CheckerPigment(*checker, quad);
+  }
+  return fmt::format("pigment {{ rgb {} transmit {} }}",
+                     Vector(std::get<Colour>(material.base_colour)), material.transmit.x);
+}
+
+std::string Texture(const Scene& scene, const Material& material, const Quad* quad) {
+  return fmt::format("texture {{ {} {} }}", Pigment(material, quad), Finish(scene, material));
+}
+
+void WriteLight(Out out, const Scene& scene, const Light& light) {
+  Vec3d colour = light.colour * light.intensity * scene.settings.exposure;
+  if (const auto* sun = std::get_if<DirectionalLight>(&light.source)) {
+    fmt::format_to(out, "light_source {{ {} rgb {} parallel point_at 0", Vector(-sun->direction),
+                   Vector(colour));
+  } else {
+    const PointLight& point = std::get<PointLight>(light.source);
+    // At distance d POV-Ray's light has 2 / (1 + (d / fade_distance)^fade_power) of its colour.
+    constexpr double kNear = 1e-3;
+    std::string fade;
+    if (point.falloff.quadratic > 0) {
+      colour /= 2 * kNear * kNear * point.falloff.quadratic;
+      fade = fmt::format(" fade_distance {} fade_power 2", kNear);
+    } else if (point.falloff.linear > 0) {
+      colour /= 2 * kNear * point.falloff.linear;
+      fade = fmt::format(" fade_distance {} fade_power 1", kNear);
+    } else {
+      colour /= point.falloff.constant;
+    }
+    fmt::format_to(out, "light_source {{ {} rgb {}{}", Vector(point.position), Vector(colour),
+                   fade);
+  }
+  fmt::format_to(out, "{} }}\n", light.casts_shadows ? "" : " shadowless");
+}
+
+void WriteSphere(Out out, const Sphere& sphere, const Material& material, std::uint32_t index) {
+  const std::string center = Vector(sphere.center);
+  fmt::format_to(out, "sphere {{ {}, {} texture {{ T{} }}", center, sphere.radius, index);
+  if (Transmits(material)) {
+    // Glass casts an opaque shadow: its core is seen by shadow rays alone.
+    fmt::format_to(out,
+                   " interior {{ ior {} }} }}\n"
+                   "sphere {{ {}, {} no_image no_reflection pigment {{ rgb 0 }}",
+                   material.ior, center, 0.9999 * sphere.radius);
+  }
+  fmt::format_to(out, " }}\n");
+}
+
+void WriteTriangle(Out out, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  fmt::format_to(out, "triangle {{ {}, {}, {} }}\n", Vector(a), Vector(b), Vector(c));
+}
+
+}  // namespace
+
+std::string PovText(const Scene& scene, const Camera& camera) {
+  std::string text;
+  const Out out(text);
+  const double aspect = static_cast<double>(scene.settings.width) / scene.settings.height;
+  const double fov_y = std::get<Perspective>(camera.projection).fov_y;
+  const double half_width = std::tan(glm::radians(fov_y) / 2) * aspect;
+  fmt::format_to(out,
+                 "#version 3.7;\n"
+                 "global_settings {{ assumed_gamma 1 max_trace_level {} ambient_light rgb 1 "
+                 "adc_bailout 1/1000 }}\n"
+                 "background {{ rgb {} }}\n"
+                 "camera {{ location {} right -x*{} up y sky {} angle {} look_at {} }}\n",
+                 scene.settings.max_depth + 1, Vector(scene.settings.background),
+                 Vector(camera.eye), aspect, Vector(camera.up),
+                 glm::degrees(2 * std::atan(half_width)), Vector(camera.look_at));
+  for (const Light& light : scene.lights) WriteLight(out, scene, light);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    fmt::format_to(out, "#declare T{} = {}\n", i, Texture(scene, scene.materials[i], nullptr));
+  }
+  for (const Object& object : scene.objects) {
+    const Material& material = scene.materials[object.material];
+    if (const auto* sphere = std::get_if<Sphere>(&object.shape)) {
+      WriteSphere(out, *sphere, material, object.material);
+    } else if (const auto* quad = std::get_if<Quad>(&object.shape)) {
+      fmt::format_to(out, "mesh {{\n");
+      WriteTriangle(out, quad->corners[0], quad->corners[1], quad->corners[2]);
+      WriteTriangle(out, quad->corners[0], quad->corners[2], quad->corners[3]);
+      fmt::format_to(out, "{} }}\n", Texture(scene, material, quad));
+    }
+  }
+  // One mesh a material, which POV-Ray puts a tree of its own over.
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    bool is_open = false;
+    for (const Object& object : scene.objects) {
+      const auto* triangle = std::get_if<Triangle>(&object.shape);
+      if (triangle == nullptr || object.material != i) continue;
+      if (!is_open) fmt::format_to(out, "mesh {{\n");
+      is_open = true;
+      WriteTriangle(out, triangle->vertices[0], triangle->vertices[1], triangle->vertices[2]);
+    }
+    if (is_open) fmt::format_to(out, "texture {{ T{} }} }}\n", i);
+  }
+  return text;
+}
+
+}  // namespace sheaf::bench
