@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -153,7 +154,7 @@ class Workspace {
 TEST_CASE("help and version go to stdout") {
   const Workspace work;
   for (const auto& arguments : std::vector<std::vector<std::string>>{
-           {"--help"}, {"-h"}, {"render", "--help"}, {"info", "--help"}}) {
+           {"--help"}, {"-h"}, {"render", "--help"}, {"compare", "--help"}, {"info", "--help"}}) {
     const Outcome help = work.Run(arguments);
     CHECK(help.code == 0);
     CHECK(help.err.empty());
@@ -169,6 +170,66 @@ TEST_CASE("help and version go to stdout") {
   const Outcome version = work.Run({"--version"});
   CHECK(version.code == 0);
   CHECK(version.out == std::string("sheaf ") + kVersion + "\n");
+}
+
+TEST_CASE("compare finds no bit that differs between targets and threads") {
+  const Workspace work;
+  const Outcome all = work.Run(
+      {"compare", kScene, "--size", "61x47", "--views", "sides", "--threads", "1,2", "--json"});
+  REQUIRE(all.code == 0);
+  const json result = json::parse(all.out);
+  CHECK(result["reference"] == "scalar, 1 thread");
+  REQUIRE(result["runs"].size() >= 2 * (2 + 3));  // both cameras; two targets besides the scalar
+  for (const json& run : result["runs"]) CHECK(run["pixels"] == 0);
+  CHECK(result["runs"][0]["target"] != "scalar");
+
+  const Outcome text = work.Run({"compare", kScene, "--size", "8x8", "--targets", "scalar,auto"});
+  CHECK(text.code == 0);
+  CHECK(Contains(text.out, "1 thread: same bits\n"));
+  CHECK(Contains(text.out, "0 of 1 renderings differ from scalar, 1 thread\n"));
+  for (const auto& wrong :
+       std::vector<std::vector<std::string>>{{"compare", kScene, "--targets", "scalar"},
+                                             {"compare", kScene, "--targets", "scalar,avx9"},
+                                             {"compare", kScene, "--threads", "0"},
+                                             {"compare", kScene, kScene},
+                                             {"compare", kScene, "--camera", "frnt"}}) {
+    const Outcome outcome = work.Run(wrong);
+    CHECK(outcome.code == 2);
+    CHECK(LineCount(outcome.err) == 1);
+  }
+}
+
+TEST_CASE("compare measures pictures, and --fail decides") {
+  const Workspace work;
+  Film a(8, 4), b(8, 4);
+  std::fill(a.rgb.begin(), a.rgb.end(), 0.5f);
+  b.rgb = a.rgb;
+  b.pixel(3, 1)[1] = 1.0f;
+  REQUIRE(WritePfm(a, work / "a.pfm").ok());
+  REQUIRE(WritePfm(b, work / "b.pfm").ok());
+  const Outcome measured =
+      work.Run({"compare", work / "a.pfm", work / "b.pfm", work / "a.pfm", "--json"});
+  REQUIRE(measured.code == 0);
+  const json pictures = json::parse(measured.out)["pictures"];
+  REQUIRE(pictures.size() == 2);
+  CHECK(pictures[0]["rmse"].get<double>() == doctest::Approx(std::sqrt(0.25 / 96)));
+  CHECK(pictures[0]["psnr"].get<double>() == doctest::Approx(-10 * std::log10(0.25 / 96)));
+  CHECK(pictures[0]["largest"] == 0.5);
+  CHECK(pictures[0]["over"] == 1);
+  CHECK(pictures[0]["flip"].get<double>() > 0);
+  CHECK(pictures[1]["rmse"] == 0);
+  CHECK(pictures[1]["flip"] == 0);
+  const auto judge = [&](const std::string& limits) {
+    return work.Run({"compare", work / "a.pfm", work / "b.pfm", "--fail", limits});
+  };
+  CHECK(judge("over=1,psnr=25").code == 0);
+  CHECK(judge("over=0").code == 1);
+  CHECK(judge("psnr=26").code == 1);
+  CHECK(Contains(judge("over=0").out, "over 1 breaks the limit of 0"));
+  CHECK(judge("psnr").code == 2);
+  CHECK(judge("beauty=1").code == 2);
+  CHECK(work.Run({"compare", work / "a.pfm"}).code == 2);
+  CHECK(work.Run({"compare", work / "a.pfm", work / "none.pfm"}).code == 4);
 }
 
 TEST_CASE("--aov heat shows rays and lanes of each tile") {

@@ -8,7 +8,8 @@ namespace sheaf {
 
 enum class ExitCode : int {
   kOk = 0,
-  kInternal = 1,  // a defect of the program, or no memory left
+  kDifferent = 1,  // what was compared differs, or a test failed
+  kInternal = 1,   // a defect of the program, or no memory left
   kUsage = 2,
   kScene = 3,
   kInputOutput = 4,

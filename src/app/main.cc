@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "src/app/compare_command.h"
 #include "src/app/exit_code.h"
 #include "src/app/info_command.h"
 #include "src/app/render_command.h"
@@ -27,9 +28,11 @@ Examples:
   sheaf render scene.json -o picture.png
   sheaf render scene.json --views seven -o 'out/{camera}.png'
   sheaf render scene.json --camera front --size 1280x960 --json -o front.pfm
+  sheaf compare scene.json --targets all --threads 1,2
+  sheaf compare expected.png found.png --fail psnr=40
   sheaf info scene.json
 
-Exit codes: 0 all went well, 2 usage, 3 bad scene, 4 input or output,
+Exit codes: 0 all went well, 1 differences, 2 usage, 3 bad scene, 4 input or output,
 130 interrupted, 143 terminated.)";
 
 // CLI11 names a flag together with the value that it has when it stands alone: "--json{-}".
@@ -53,6 +56,10 @@ void FillStandardDescriptors() {
 
 ExitCode ToExitCode(const Status& status) {
   return status.ok() ? ExitCode::kOk : Report(status.error());
+}
+
+ExitCode ToExitCode(const Result<ExitCode>& result) {
+  return result.ok() ? result.value() : Report(result.error());
 }
 
 // Names the first word that fits nothing. CLI11 would rather complain about what it then misses.
@@ -105,8 +112,10 @@ ExitCode Main(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   RenderRequest render_request;
+  CompareRequest compare_request;
   InfoRequest info_request;
   const CLI::App* render = AddRenderCommand(app, render_request);
+  const CLI::App* compare = AddCompareCommand(app, compare_request);
   const CLI::App* info = AddInfoCommand(app, info_request);
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
@@ -118,6 +127,7 @@ ExitCode Main(int argc, char** argv) {
     return ReportParse(app, error);
   }
   if (render->parsed()) return ToExitCode(RunRender(render_request));
+  if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
   if (info->parsed()) return ToExitCode(RunInfo(info_request));
   return ExitCode::kInternal;
 }

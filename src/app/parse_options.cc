@@ -1,7 +1,9 @@
 #include "src/app/parse_options.h"
 
+#include <algorithm>
 #include <charconv>
 
+#include "src/render/render.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -49,6 +51,16 @@ std::optional<PixelRect> ParseRect(std::string_view text) {
   const PixelRect rect{sides[0], sides[1], sides[2], sides[3]};
   if (rect.width() <= 0 || rect.height() <= 0) return std::nullopt;
   return rect;
+}
+
+std::optional<std::vector<int>> ParseThreads(const std::string& text) {
+  std::vector<int> counts;
+  for (const std::string& word : SplitAtCommas(text)) {
+    const std::optional<int> count = ParseInteger(word, 1, kMaxThreads);
+    if (!count || std::find(counts.begin(), counts.end(), *count) != counts.end()) return {};
+    counts.push_back(*count);
+  }
+  return counts;
 }
 
 std::vector<std::string> SplitAtCommas(std::string_view text) {

@@ -27,6 +27,9 @@ std::optional<PixelSize> ParseSize(std::string_view text);
 // "x0,y0,x1,y1" with 0 <= x0 < x1 <= kMaxImageSide, and so for y.
 std::optional<PixelRect> ParseRect(std::string_view text);
 
+// "1,2,4": counts of threads, each in [1, kMaxThreads], none twice.
+std::optional<std::vector<int>> ParseThreads(const std::string& text);
+
 // The parts between commas; "a,,b" has an empty one.
 std::vector<std::string> SplitAtCommas(std::string_view text);
 

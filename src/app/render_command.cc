@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <climits>
 #include <cstdio>
 #include <utility>
 
-#include "simd/target.h"
+#include "src/app/add_options.h"
+#include "src/app/choose.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/progress.h"
@@ -18,7 +18,6 @@
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
 #include "src/formats/scene_json.h"
-#include "src/formats/suggest_name.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -33,90 +32,9 @@ struct Frame {
   std::string heat_path;  // empty: none
 };
 
-Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
-
-// Adds an option whose text `parse` understands; `expected` completes "--name: X is not ...".
-template <typename T, typename Parse>
-void AddParsed(CLI::App& app, const char* name, T& value, const char* placeholder,
-               const std::string& expected, const char* description, Parse parse) {
-  app.add_option(
-         name,
-         [name, &value, expected, parse](const CLI::results_t& words) {
-           auto parsed = parse(words.front());
-           if (!parsed) {
-             throw CLI::ValidationError(name,
-                                        fmt::format("\"{}\" is not {}", words.front(), expected));
-           }
-           value = *std::move(parsed);
-           return true;
-         },
-         description)
-      ->option_text(placeholder);
-}
-
-void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
-                const char* description) {
-  const std::string expected = max == INT_MAX ? fmt::format("a whole number from {}", min)
-                                              : fmt::format("a whole number {} to {}", min, max);
-  AddParsed(app, name, value, "N", expected, description,
-            [min, max](const std::string& text) { return ParseInteger(text, min, max); });
-}
-
-// A part of white or of a weight.
-void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
-              const char* placeholder, const char* description) {
-  AddParsed(app, name, value, placeholder, "a number 0 to 1", description,
-            [](const std::string& text) { return ParseNumber(text, 0, 1); });
-}
-
-// Names without a blank or a double among them.
-std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
-  std::vector<std::string> names = SplitAtCommas(text);
-  std::vector<std::string> sorted = names;
-  std::sort(sorted.begin(), sorted.end());
-  const bool repeated = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
-  if (repeated || sorted.front().empty()) return std::nullopt;
-  return names;
-}
-
-template <typename T>
-std::vector<std::string> NamesOf(const std::vector<T>& items) {
-  std::vector<std::string> names;
-  for (const T& item : items) names.push_back(item.name);
-  return names;
-}
-
-template <typename T>
-const T* FindByName(const std::vector<T>& items, const std::string& name) {
-  const auto found =
-      std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
-  return found == items.end() ? nullptr : &*found;
-}
-
-// E.g. `--camera: unknown camera "frnt"; did you mean "front"? (the scene has: front, up, down)`.
-Error UnknownName(std::string_view option, std::string_view kind, const std::string& name,
-                  std::string_view title, const std::vector<std::string>& choices) {
-  const std::string list = fmt::format("{}", fmt::join(choices, ", "));
-  return Usage(fmt::format("{}: unknown {} \"{}\"{} ({}: {})", option, kind, Printable(name),
-                           DidYouMean(name, {choices.begin(), choices.end()}), title,
-                           choices.empty() ? "none" : Printable(list)));
-}
-
-Status ChooseTarget(const std::string& target) {
-  if (target == "scalar" || simd::ForceTarget(target)) return Done{};
-  std::vector<std::string> choices = {"auto", "scalar"};
-  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
-  const std::vector<std::string> compiled = simd::CompiledTargets();
-  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
-    return Usage(fmt::format("--target: this processor does not run \"{}\" (usable: {})", target,
-                             fmt::join(choices, ", ")));
-  }
-  return UnknownName("--target", "target", target, "usable", choices);
-}
-
 // What is wrong without a look at the scene: the command line first, then the places to write to.
 Status CheckRequest(const RenderRequest& request) {
-  if (request.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
+  if (request.choice.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
     return Usage(
         fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
   }
@@ -157,31 +75,6 @@ Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& 
   return Done{};
 }
 
-Result<std::vector<const Camera*>> ChooseCameras(const RenderRequest& request, const Scene& scene) {
-  std::vector<const Camera*> cameras;
-  if (!request.view.empty()) {
-    const View* view = FindByName(scene.views, request.view);
-    if (view == nullptr) {
-      return UnknownName("--views", "view", request.view, "the scene has", NamesOf(scene.views));
-    }
-    for (const std::uint32_t index : view->cameras) cameras.push_back(&scene.cameras[index]);
-  }
-  for (const std::string& name : request.cameras) {
-    const Camera* camera = FindByName(scene.cameras, name);
-    if (camera == nullptr) {
-      return UnknownName("--camera", "camera", name, "the scene has", NamesOf(scene.cameras));
-    }
-    cameras.push_back(camera);
-  }
-  if (cameras.empty()) {
-    if (scene.cameras.empty()) {
-      return Error{ErrorKind::kScene, fmt::format("{}: the scene has no camera", request.scene)};
-    }
-    cameras.push_back(&scene.cameras.front());
-  }
-  return cameras;
-}
-
 // Puts the camera's name into the path, unless it would lead into another folder.
 Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {
   std::string path = output;
@@ -202,11 +95,13 @@ Result<std::string> ExpandPath(const std::string& output, const std::string& cam
 }
 
 Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {
-  const Result<std::vector<const Camera*>> cameras = ChooseCameras(request, scene);
+  const Result<std::vector<const Camera*>> cameras =
+      ChooseCameras(request.choice, request.scene, scene);
   if (!cameras) return cameras.error();
   if (cameras.value().size() > 1 && request.output.find(kCameraField) == std::string::npos) {
     return Usage(fmt::format("-o {}: the view \"{}\" has {} cameras, which need {} in the path",
-                             request.output, request.view, cameras.value().size(), kCameraField));
+                             request.output, request.choice.view, cameras.value().size(),
+                             kCameraField));
   }
   std::vector<Frame> frames;
   for (const Camera* camera : cameras.value()) {
@@ -298,11 +193,7 @@ Status WriteStatistics(const std::string& destination, const std::string& json) 
 CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   CLI::App* render = app.add_subcommand("render", "Render a scene into pictures");
   render->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
-  AddParsed(*render, "--camera", request.cameras, "NAME[,NAME]", "a list of different camera names",
-            "The cameras to render; the scene's first if absent", &ParseNames);
-  render->add_option("--views", request.view, "A view: a set of cameras that the scene names")
-      ->option_text("SET")
-      ->excludes("--camera");
+  AddCameraChoice(*render, request.choice);
   render
       ->add_option("-o,--output", request.output,
                    "The picture, .png or .pfm (needed); {camera} becomes the camera's name")

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/core/error.h"
 #include "src/render/render.h"
@@ -19,8 +20,7 @@ namespace sheaf {
 // The command line as it was given. What is absent comes from the scene.
 struct RenderRequest {
   std::string scene;
-  std::vector<std::string> cameras;  // empty: the view's, or the scene's first
-  std::string view;                  // empty: none
+  CameraChoice choice;
   std::string output;
   std::optional<PixelSize> size;
   std::optional<int> samples, max_depth;

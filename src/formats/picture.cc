@@ -94,4 +94,20 @@ Status WritePicture(const Film& film, Transfer transfer, const std::string& path
   return written ? writer.value().Finish() : written;
 }
 
+Result<ReadPictureResult> ReadPicture(const std::string& path) {
+  const Status known = CheckPicturePath(path);
+  if (!known) return known.error();
+  if (FormatOf(path) == Format::kPfm) {
+    Result<Film> film = ReadPfm(path);
+    if (!film) return film.error();
+    return ReadPictureResult{std::move(film).value(), false};
+  }
+  const Result<Picture8> picture = ReadPng(path);
+  if (!picture) return picture.error();
+  Film film(picture.value().width, picture.value().height);
+  std::transform(picture.value().rgb.begin(), picture.value().rgb.end(), film.rgb.begin(),
+                 [](std::uint8_t byte) { return static_cast<float>(byte / 255.0); });
+  return ReadPictureResult{std::move(film), true};
+}
+
 }  // namespace sheaf

@@ -49,6 +49,13 @@ class PictureWriter {
   std::vector<std::uint8_t> row_;  // quantised
 };
 
+// Reads a .png (values of 0 to 1, as they lie in the file) or a .pfm.
+struct ReadPictureResult {
+  Film film;
+  bool is_display = false;  // whether the values are encoded for a display: of 8 bits
+};
+Result<ReadPictureResult> ReadPicture(const std::string& path);
+
 // The whole film through a PictureWriter.
 Status WritePicture(const Film& film, Transfer transfer, const std::string& path);
 

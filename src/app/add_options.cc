@@ -1,0 +1,31 @@
+#include "src/app/add_options.h"
+
+#include <climits>
+
+#include "src/app/parse_options.h"
+
+namespace sheaf {
+
+void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
+                const char* description) {
+  const std::string expected = max == INT_MAX ? fmt::format("a whole number from {}", min)
+                                              : fmt::format("a whole number {} to {}", min, max);
+  AddParsed(app, name, value, "N", expected, description,
+            [min, max](const std::string& text) { return ParseInteger(text, min, max); });
+}
+
+void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
+              const char* placeholder, const char* description) {
+  AddParsed(app, name, value, placeholder, "a number 0 to 1", description,
+            [](const std::string& text) { return ParseNumber(text, 0, 1); });
+}
+
+void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
+  AddParsed(app, "--camera", choice.cameras, "NAME[,NAME]", "a list of different camera names",
+            "The cameras; the scene's first if absent", &ParseNames);
+  app.add_option("--views", choice.view, "A view: a set of cameras that the scene names")
+      ->option_text("SET")
+      ->excludes("--camera");
+}
+
+}  // namespace sheaf

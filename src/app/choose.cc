@@ -1,0 +1,90 @@
+#include "src/app/choose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "simd/target.h"
+#include "src/app/parse_options.h"
+#include "src/formats/printable.h"
+#include "src/formats/suggest_name.h"
+
+namespace sheaf {
+namespace {
+
+template <typename T>
+std::vector<std::string> NamesOf(const std::vector<T>& items) {
+  std::vector<std::string> names;
+  for (const T& item : items) names.push_back(item.name);
+  return names;
+}
+
+template <typename T>
+const T* FindByName(const std::vector<T>& items, const std::string& name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+// E.g. `--camera: unknown camera "frnt"; did you mean "front"? (the scene has: front, up, down)`.
+Error UnknownName(std::string_view option, std::string_view kind, const std::string& name,
+                  std::string_view title, const std::vector<std::string>& choices) {
+  const std::string list = fmt::format("{}", fmt::join(choices, ", "));
+  return Usage(fmt::format("{}: unknown {} \"{}\"{} ({}: {})", option, kind, Printable(name),
+                           DidYouMean(name, {choices.begin(), choices.end()}), title,
+                           choices.empty() ? "none" : Printable(list)));
+}
+
+}  // namespace
+
+Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+
+std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
+  std::vector<std::string> names = SplitAtCommas(text);
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  const bool repeated = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  if (repeated || sorted.front().empty()) return std::nullopt;
+  return names;
+}
+
+Status ChooseTarget(const std::string& target) {
+  if (target == "scalar" || simd::ForceTarget(target)) return Done{};
+  std::vector<std::string> choices = {"auto", "scalar"};
+  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
+  const std::vector<std::string> compiled = simd::CompiledTargets();
+  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
+    return Usage(fmt::format("--target: this processor does not run \"{}\" (usable: {})", target,
+                             fmt::join(choices, ", ")));
+  }
+  return UnknownName("--target", "target", target, "usable", choices);
+}
+
+Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
+                                                 const std::string& path, const Scene& scene) {
+  std::vector<const Camera*> cameras;
+  if (!choice.view.empty()) {
+    const View* view = FindByName(scene.views, choice.view);
+    if (view == nullptr) {
+      return UnknownName("--views", "view", choice.view, "the scene has", NamesOf(scene.views));
+    }
+    for (const std::uint32_t index : view->cameras) cameras.push_back(&scene.cameras[index]);
+  }
+  for (const std::string& name : choice.cameras) {
+    const Camera* camera = FindByName(scene.cameras, name);
+    if (camera == nullptr) {
+      return UnknownName("--camera", "camera", name, "the scene has", NamesOf(scene.cameras));
+    }
+    cameras.push_back(camera);
+  }
+  if (cameras.empty()) {
+    if (scene.cameras.empty()) {
+      return Error{ErrorKind::kScene, fmt::format("{}: the scene has no camera", path)};
+    }
+    cameras.push_back(&scene.cameras.front());
+  }
+  return cameras;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,35 @@
+// What a word on the command line names: targets, cameras, views.
+#ifndef SHEAF_APP_CHOOSE_H_
+#define SHEAF_APP_CHOOSE_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "src/core/error.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+Error Usage(std::string message);  // of kind kUsage
+
+// Names between commas, without a blank or a double among them.
+std::optional<std::vector<std::string>> ParseNames(const std::string& text);
+
+// Makes SIMD kernels run `target`; "scalar", which runs none, is fine too.
+Status ChooseTarget(const std::string& target);
+
+// Which cameras of a scene to use.
+struct CameraChoice {
+  std::vector<std::string> cameras;  // empty: the view's, or the scene's first
+  std::string view;                  // empty: none
+};
+
+// `path` is the scene's, for messages. At least one camera.
+Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
+                                                 const std::string& path, const Scene& scene);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_CHOOSE_H_

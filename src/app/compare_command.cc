@@ -1,0 +1,316 @@
+#include "src/app/compare_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "simd/target.h"
+#include "src/app/add_options.h"
+#include "src/app/interrupt.h"
+#include "src/app/progress.h"
+#include "src/app/standard_output.h"
+#include "src/formats/picture.h"
+#include "src/formats/printable.h"
+#include "src/formats/scene_json.h"
+#include "src/render/object_at.h"
+#include "src/render/picture_metrics.h"
+#include "src/render/render.h"
+#include "src/scene/srgb.h"
+
+namespace sheaf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// ---- Renderings of a scene ----
+
+// What renders a frame: one of the things that must not change a bit.
+struct Renderer {
+  std::string target;
+  int threads;
+  std::string Name() const {
+    return fmt::format("{}, {} thread{}", target, threads, threads == 1 ? "" : "s");
+  }
+};
+
+Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Camera& camera,
+                        RenderOptions options) {
+  if (const Status chosen = ChooseTarget(renderer.target); !chosen) return chosen.error();
+  options.engine = renderer.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  options.threads = renderer.threads;
+  FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
+  RenderStats stats;
+  Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
+  if (film && stats.target != renderer.target) {
+    return Usage(
+        fmt::format("--targets: {} was asked for and {} ran", renderer.target, stats.target));
+  }
+  return film;
+}
+
+std::vector<Renderer> ListRenderers(const CompareRequest& request) {
+  std::vector<std::string> targets;
+  for (const std::string& target : request.targets) {
+    if (target == "all") {
+      targets.push_back("scalar");
+      for (std::string& usable : simd::UsableTargets()) targets.push_back(std::move(usable));
+    } else if (target == "auto") {
+      targets.push_back(simd::UsableTargets().front());
+    } else {
+      targets.push_back(target);
+    }
+  }
+  std::vector<Renderer> renderers;
+  for (const int threads : request.threads) {
+    for (const std::string& target : targets) renderers.push_back({target, threads});
+  }
+  return renderers;
+}
+
+std::string ObjectName(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                       int x, int y) {
+  const auto object = ObjectAt(scene, camera, options.width, options.height, x, y);
+  if (!object) return "background";
+  const std::string& name = scene.objects[*object].name;
+  return name.empty() ? fmt::format("object {}", *object) : fmt::format("\"{}\"", Printable(name));
+}
+
+// Exact, for a bit to be seen.
+std::string PixelText(const float* rgb) {
+  return fmt::format("({:a}, {:a}, {:a})", rgb[0], rgb[1], rgb[2]);
+}
+
+Json PixelJson(const float* rgb) {
+  return {fmt::format("{:a}", rgb[0]), fmt::format("{:a}", rgb[1]), fmt::format("{:a}", rgb[2])};
+}
+
+// Adds one comparison to `json` and returns its line.
+std::string DescribeDifference(const Scene& scene, const Camera& camera,
+                               const RenderOptions& options, const Film& expected,
+                               const Film& found, const FilmDifference& difference, Json& json) {
+  json["pixels"] = difference.pixels;
+  json["most_ulps"] = difference.most_ulps;
+  if (difference.pixels == 0) {
+    return difference.most_ulps == 0
+               ? "same bits"
+               : fmt::format("within the allowed, at most {} ULP apart", difference.most_ulps);
+  }
+  const int x = difference.x, y = difference.y;
+  const std::string object = ObjectName(scene, camera, options, x, y);
+  const float *a = expected.pixel(x, y), *b = found.pixel(x, y);
+  json["first"] = {
+      {"x", x}, {"y", y}, {"object", object}, {"reference", PixelJson(a)}, {"value", PixelJson(b)}};
+  return fmt::format("{} pixels differ, by up to {} ULP; first ({}, {}) on {}: {} and not {}",
+                     difference.pixels, difference.most_ulps, x, y, object, PixelText(b),
+                     PixelText(a));
+}
+
+Result<ExitCode> CompareRenderings(const CompareRequest& request) {
+  const std::vector<Renderer> renderers = ListRenderers(request);
+  if (renderers.size() < 2) {
+    return Usage("--targets, --threads: there is one rendering, and nothing to compare it with");
+  }
+  for (const Renderer& renderer : renderers) {
+    if (const Status known = ChooseTarget(renderer.target); !known) return known.error();
+  }
+  const std::string& path = request.inputs.front();
+  const Result<Scene> read = ReadSceneJson(path);
+  if (!read) return read.error();
+  const Scene& scene = read.value();
+  const auto cameras = ChooseCameras(request.choice, path, scene);
+  if (!cameras) return cameras.error();
+
+  RenderOptions options;
+  const Settings& settings = scene.settings;
+  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
+  options.width = size.width;
+  options.height = size.height;
+  options.samples = request.samples.value_or(settings.samples);
+  options.max_depth = settings.max_depth;
+  options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
+
+  CatchInterrupts();
+  Json json = {{"scene", path}, {"reference", renderers.front().Name()}, {"runs", Json::array()}};
+  std::uint64_t differing = 0, runs = 0;
+  for (const Camera* camera : cameras.value()) {
+    const Result<Film> expected = RenderWith(renderers.front(), scene, *camera, options);
+    if (!expected) return expected.error();
+    for (std::size_t i = 1; i < renderers.size(); ++i) {
+      const Result<Film> found = RenderWith(renderers[i], scene, *camera, options);
+      if (!found) return found.error();
+      const FilmDifference difference = CompareFilms(
+          expected.value(), found.value(), static_cast<std::uint32_t>(request.max_ulp.value_or(0)));
+      Json run = {{"camera", camera->name},
+                  {"target", renderers[i].target},
+                  {"threads", renderers[i].threads}};
+      const std::string line = DescribeDifference(scene, *camera, options, expected.value(),
+                                                  found.value(), difference, run);
+      json["runs"].push_back(run);
+      ++runs;
+      differing += difference.pixels > 0;
+      if (request.json) continue;
+      const Status written = WriteStandardOutput(
+          fmt::format("{}: {}: {}\n", Printable(camera->name), renderers[i].Name(), line));
+      if (!written) return written.error();
+    }
+  }
+  const Status written = WriteStandardOutput(
+      request.json ? json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
+                   : fmt::format("{} of {} renderings differ from {}\n", differing, runs,
+                                 renderers.front().Name()));
+  if (!written) return written.error();
+  return differing == 0 ? ExitCode::kOk : ExitCode::kDifferent;
+}
+
+// ---- Pictures ----
+
+struct Metric {
+  const char* name;
+  double (*value)(const PictureMetrics& metrics);
+  bool more_is_better;
+};
+
+constexpr Metric kMetrics[] = {
+    {"rmse", [](const PictureMetrics& m) { return m.rmse; }, false},
+    {"psnr", [](const PictureMetrics& m) { return m.psnr; }, true},
+    {"largest", [](const PictureMetrics& m) { return m.largest; }, false},
+    {"over", [](const PictureMetrics& m) { return static_cast<double>(m.over); }, false},
+    {"flip", [](const PictureMetrics& m) { return m.mean_flip; }, false},
+};
+
+const Metric* FindMetric(const std::string& name) {
+  for (const Metric& metric : kMetrics) {
+    if (name == metric.name) return &metric;
+  }
+  return nullptr;
+}
+
+std::optional<std::vector<std::pair<std::string, double>>> ParseLimits(const std::string& text) {
+  std::vector<std::pair<std::string, double>> limits;
+  for (const std::string& part : SplitAtCommas(text)) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || FindMetric(part.substr(0, equals)) == nullptr) return {};
+    const auto value =
+        ParseNumber(part.substr(equals + 1), 0, std::numeric_limits<double>::infinity());
+    if (!value) return {};
+    limits.emplace_back(part.substr(0, equals), *value);
+  }
+  return limits;
+}
+
+// Display values: those of a float picture, which are light, are encoded.
+Result<Film> ReadDisplayValues(const std::string& path, Transfer transfer) {
+  Result<ReadPictureResult> read = ReadPicture(path);
+  if (!read) return read.error();
+  Film film = std::move(read.value().film);
+  if (transfer == Transfer::kSrgb && !read.value().is_display) {
+    for (float& value : film.rgb) {
+      value = static_cast<float>(SrgbEncode(static_cast<double>(value)));
+    }
+  }
+  return film;
+}
+
+// The first limit that is broken, or nothing.
+std::string BrokenLimit(const PictureMetrics& metrics,
+                        const std::vector<std::pair<std::string, double>>& limits) {
+  for (const auto& [name, limit] : limits) {
+    const Metric* metric = FindMetric(name);
+    const double value = metric->value(metrics);
+    if (metric->more_is_better ? !(value >= limit) : !(value <= limit)) {
+      return fmt::format("{} {:.6g} breaks the limit of {:g}", name, value, limit);
+    }
+  }
+  return {};
+}
+
+Result<ExitCode> ComparePictures(const CompareRequest& request) {
+  if (request.inputs.size() < 2) {
+    return Usage(fmt::format("{}: a second picture is missing", request.inputs.front()));
+  }
+  const Transfer transfer = request.transfer == "srgb" ? Transfer::kSrgb : Transfer::kLinear;
+  const Result<Film> reference = ReadDisplayValues(request.inputs.front(), transfer);
+  if (!reference) return reference.error();
+  Json json = {{"reference", request.inputs.front()}, {"pictures", Json::array()}};
+  ExitCode code = ExitCode::kOk;
+  std::string text;
+  for (std::size_t i = 1; i < request.inputs.size(); ++i) {
+    const std::string& path = request.inputs[i];
+    const Result<Film> test = ReadDisplayValues(path, transfer);
+    if (!test) return test.error();
+    const Film &a = reference.value(), &b = test.value();
+    if (a.width != b.width || a.height != b.height) {
+      return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", path, b.width, b.height,
+                               request.inputs.front(), a.width, a.height));
+    }
+    const PictureMetrics metrics = MeasurePictures(a, b, transfer);
+    const std::string broken = BrokenLimit(metrics, request.limits);
+    Json entry = {{"path", path}};
+    // JSON has no infinity: equal pictures have a null for their PSNR.
+    for (const Metric& metric : kMetrics) entry[metric.name] = metric.value(metrics);
+    if (!broken.empty()) {
+      entry["broken"] = broken;
+      code = ExitCode::kDifferent;
+    }
+    json["pictures"].push_back(entry);
+    text += fmt::format(
+        "{}: rmse {:.6g}, psnr {:.2f} dB, largest error {:.6g}, {} pixels over 1/255, flip "
+        "{:.6g}{}{}\n",
+        path, metrics.rmse, metrics.psnr, metrics.largest, metrics.over, metrics.mean_flip,
+        broken.empty() ? "" : "; ", broken);
+  }
+  const Status written = WriteStandardOutput(
+      request.json ? json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text);
+  if (!written) return written.error();
+  return code;
+}
+
+}  // namespace
+
+CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
+  CLI::App* compare = app.add_subcommand(
+      "compare", "Compare targets and threads on a scene bit by bit, or pictures by metrics");
+  compare->add_option("INPUT", request.inputs, "A scene; or pictures, the first the reference")
+      ->required()
+      ->option_text("...");
+  AddCameraChoice(*compare, request.choice);
+  AddParsed(*compare, "--size", request.size, "WxH",
+            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
+            "Pixels of the picture", &ParseSize);
+  AddInteger(*compare, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
+  AddParsed(
+      *compare, "--targets", request.targets, "all|NAME[,NAME]", "a list of different targets",
+      "What renders; the first is the reference. all: scalar and every usable one", &ParseNames);
+  AddParsed(*compare, "--threads", request.threads, "N[,N]",
+            fmt::format("a list of whole numbers 1 to {}", kMaxThreads),
+            "Threads, each with every target; 1 if absent", &ParseThreads);
+  AddInteger(*compare, "--max-ulp", request.max_ulp, 0, std::numeric_limits<int>::max(),
+             "Units in the last place that a channel may differ by; 0 if absent");
+  compare->add_option("--precision", request.precision, "Arithmetic")
+      ->option_text("strict|double")
+      ->check(CLI::IsMember({"strict", "double"}));
+  compare->add_option("--transfer", request.transfer, "How 8-bit pictures encode light")
+      ->option_text("linear|srgb")
+      ->check(CLI::IsMember({"linear", "srgb"}));
+  AddParsed(*compare, "--fail", request.limits, "METRIC=X[,...]",
+            "a list of limits of rmse, psnr, largest, over or flip, like rmse=0.01,psnr=40",
+            "Exit with 1 where a picture breaks a limit: rmse, psnr, largest, over, flip",
+            &ParseLimits);
+  compare->add_flag("--json", request.json, "The result as JSON");
+  return compare;
+}
+
+Result<ExitCode> RunCompare(const CompareRequest& request) {
+  if (CheckPicturePath(request.inputs.front())) return ComparePictures(request);
+  if (request.inputs.size() > 1) {
+    return Usage(fmt::format("{}: neither a .png nor a .pfm, and of scenes there can be only one",
+                             request.inputs.front()));
+  }
+  return CompareRenderings(request);
+}
+
+}  // namespace sheaf

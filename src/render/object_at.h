@@ -1,0 +1,19 @@
+// What a picture shows at a place.
+#ifndef SHEAF_RENDER_OBJECT_AT_H_
+#define SHEAF_RENDER_OBJECT_AT_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+// Index of the object that the middle of pixel (x, y) of a width x height picture shows; nothing
+// for the background. Takes as long as a ray takes to try every primitive.
+std::optional<std::uint32_t> ObjectAt(const Scene& scene, const Camera& camera, int width,
+                                      int height, int x, int y);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_OBJECT_AT_H_
