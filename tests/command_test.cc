@@ -153,8 +153,12 @@ class Workspace {
 
 TEST_CASE("help and version go to stdout") {
   const Workspace work;
-  for (const auto& arguments : std::vector<std::vector<std::string>>{
-           {"--help"}, {"-h"}, {"render", "--help"}, {"compare", "--help"}, {"info", "--help"}}) {
+  for (const auto& arguments : std::vector<std::vector<std::string>>{{"--help"},
+                                                                     {"-h"},
+                                                                     {"render", "--help"},
+                                                                     {"compare", "--help"},
+                                                                     {"bench", "--help"},
+                                                                     {"info", "--help"}}) {
     const Outcome help = work.Run(arguments);
     CHECK(help.code == 0);
     CHECK(help.err.empty());
@@ -197,6 +201,62 @@ TEST_CASE("compare finds no bit that differs between targets and threads") {
     CHECK(outcome.code == 2);
     CHECK(LineCount(outcome.err) == 1);
   }
+}
+
+TEST_CASE("bench measures every target and judges against an earlier run") {
+  const Workspace work;
+  const std::string before = work / "before.json";
+  const std::vector<std::string> bench = {"bench", kScene, "--size", "64x48", "--repetitions", "5"};
+  auto arguments = bench;
+  arguments.push_back("--json=" + before);
+  const Outcome first = work.Run(arguments);
+  REQUIRE(first.code == 0);
+  CHECK(Contains(first.out, "95 % interval"));
+  json report = json::parse(ReadText(before));
+  REQUIRE(report["rows"].size() >= 3);
+  CHECK(report["rows"][0]["target"] == "scalar");
+  for (const json& row : report["rows"]) {
+    CHECK(row["seconds"].size() == 5);
+    const json& rate = row["rays_per_second"];
+    CHECK(rate["low"] <= rate["median"]);
+    CHECK(rate["median"] <= rate["high"]);
+    CHECK(row["rays"] == report["rows"][0]["rays"]);
+    CHECK(row["over_scalar"].get<double>() > 0);
+  }
+  // Against itself made a hundred times as fast, and a hundred times as slow; no clock decides.
+  const auto judge = [&](double factor) {
+    json changed = report;
+    for (json& row : changed["rows"]) {
+      std::vector<double> seconds;
+      for (int i = 0; i < 9; ++i) seconds.push_back(factor * (1 + 1e-4 * i));
+      row["seconds"] = seconds;
+    }
+    WriteText(before, changed.dump());
+    auto again = bench;
+    again.insert(again.end(), {"--targets", "auto", "--baseline", before, "--absolute", "--json"});
+    return work.Run(again);
+  };
+  // A row that is too noisy gets no verdict, rightly: then there is nothing to check.
+  const auto verdict = [](const Outcome& outcome) {
+    return json::parse(outcome.out)["rows"][0]["verdict"].get<std::string>();
+  };
+  const Outcome slower = judge(1e-6), faster = judge(1e6);
+  if (!Contains(verdict(slower), "noisy")) {
+    CHECK(Contains(verdict(slower), "slower"));
+    CHECK(slower.code == 1);
+  }
+  if (!Contains(verdict(faster), "noisy")) CHECK(Contains(verdict(faster), "faster"));
+  CHECK(faster.code == 0);
+  auto few = bench;
+  few.insert(few.end(), {"--targets", "auto", "--baseline", before});
+  few[5] = "2";
+  CHECK(Contains(work.Run(few).out, "too few repetitions"));
+
+  WriteText(before, "{}");
+  few[5] = "1";
+  CHECK(work.Run(few).code == 4);
+  CHECK(work.Run({"bench", kScene, "--baseline", work / "none"}).code == 4);
+  CHECK(work.Run({"bench", kScene, "--targets", "avx9"}).code == 2);
 }
 
 TEST_CASE("compare measures pictures, and --fail decides") {

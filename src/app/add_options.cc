@@ -3,6 +3,7 @@
 #include <climits>
 
 #include "src/app/parse_options.h"
+#include "src/render/render.h"
 
 namespace sheaf {
 
@@ -18,6 +19,24 @@ void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
               const char* placeholder, const char* description) {
   AddParsed(app, name, value, placeholder, "a number 0 to 1", description,
             [](const std::string& text) { return ParseNumber(text, 0, 1); });
+}
+
+void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description) {
+  AddParsed(app, "--targets", targets, "all|NAME[,NAME]", "a list of different targets",
+            description, &ParseNames);
+}
+
+void AddThreads(CLI::App& app, std::vector<int>& threads) {
+  AddParsed(app, "--threads", threads, "N[,N]",
+            fmt::format("a list of whole numbers 1 to {}", kMaxThreads),
+            "Threads, each with every target; 1 if absent", &ParseThreads);
+}
+
+void AddJson(CLI::App& app, std::string& destination, const char* description) {
+  // A flag that may hold a value: an option would swallow the word after it.
+  app.add_flag("--json{-}", destination, description)
+      ->option_text("[=FILE]")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }
 
 void AddCameraChoice(CLI::App& app, CameraChoice& choice) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "src/app/choose.h"
 
@@ -39,6 +40,15 @@ void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int 
 // A part of white or of a weight, in [0, 1].
 void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
               const char* placeholder, const char* description);
+
+// --targets, a list that ExpandTargets takes.
+void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description);
+
+// --threads, a list.
+void AddThreads(CLI::App& app, std::vector<int>& threads);
+
+// --json[=FILE]: "-" where it stands alone.
+void AddJson(CLI::App& app, std::string& destination, const char* description);
 
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);

@@ -61,6 +61,20 @@ Status ChooseTarget(const std::string& target) {
   return UnknownName("--target", "target", target, "usable", choices);
 }
 
+std::vector<std::string> ExpandTargets(const std::vector<std::string>& names) {
+  std::vector<std::string> targets;
+  for (const std::string& name : names) {
+    const std::vector<std::string> usable = simd::UsableTargets();
+    if (name == "all") {
+      targets.push_back("scalar");
+      targets.insert(targets.end(), usable.begin(), usable.end());
+    } else {
+      targets.push_back(name == "auto" ? usable.front() : name);
+    }
+  }
+  return targets;
+}
+
 Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
                                                  const std::string& path, const Scene& scene) {
   std::vector<const Camera*> cameras;

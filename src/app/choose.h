@@ -20,6 +20,9 @@ std::optional<std::vector<std::string>> ParseNames(const std::string& text);
 // Makes SIMD kernels run `target`; "scalar", which runs none, is fine too.
 Status ChooseTarget(const std::string& target);
 
+// Names of targets, where "all" stands for scalar and every usable one, "auto" for the best.
+std::vector<std::string> ExpandTargets(const std::vector<std::string>& names);
+
 // Which cameras of a scene to use.
 struct CameraChoice {
   std::vector<std::string> cameras;  // empty: the view's, or the scene's first

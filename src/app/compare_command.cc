@@ -8,7 +8,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "simd/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
 #include "src/app/progress.h"
@@ -53,17 +52,7 @@ Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Came
 }
 
 std::vector<Renderer> ListRenderers(const CompareRequest& request) {
-  std::vector<std::string> targets;
-  for (const std::string& target : request.targets) {
-    if (target == "all") {
-      targets.push_back("scalar");
-      for (std::string& usable : simd::UsableTargets()) targets.push_back(std::move(usable));
-    } else if (target == "auto") {
-      targets.push_back(simd::UsableTargets().front());
-    } else {
-      targets.push_back(target);
-    }
-  }
+  const std::vector<std::string> targets = ExpandTargets(request.targets);
   std::vector<Renderer> renderers;
   for (const int threads : request.threads) {
     for (const std::string& target : targets) renderers.push_back({target, threads});
@@ -282,12 +271,9 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
             fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
             "Pixels of the picture", &ParseSize);
   AddInteger(*compare, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
-  AddParsed(
-      *compare, "--targets", request.targets, "all|NAME[,NAME]", "a list of different targets",
-      "What renders; the first is the reference. all: scalar and every usable one", &ParseNames);
-  AddParsed(*compare, "--threads", request.threads, "N[,N]",
-            fmt::format("a list of whole numbers 1 to {}", kMaxThreads),
-            "Threads, each with every target; 1 if absent", &ParseThreads);
+  AddTargets(*compare, request.targets,
+             "What renders; the first is the reference. all: scalar and every usable one");
+  AddThreads(*compare, request.threads);
   AddInteger(*compare, "--max-ulp", request.max_ulp, 0, std::numeric_limits<int>::max(),
              "Units in the last place that a channel may differ by; 0 if absent");
   compare->add_option("--precision", request.precision, "Arithmetic")

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "src/app/bench_command.h"
 #include "src/app/compare_command.h"
 #include "src/app/exit_code.h"
 #include "src/app/info_command.h"
@@ -30,9 +31,10 @@ Examples:
   sheaf render scene.json --camera front --size 1280x960 --json -o front.pfm
   sheaf compare scene.json --targets all --threads 1,2
   sheaf compare expected.png found.png --fail psnr=40
+  sheaf bench scene.json --baseline before.json
   sheaf info scene.json
 
-Exit codes: 0 all went well, 1 differences, 2 usage, 3 bad scene, 4 input or output,
+Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
 130 interrupted, 143 terminated.)";
 
 // CLI11 names a flag together with the value that it has when it stands alone: "--json{-}".
@@ -112,9 +114,11 @@ ExitCode Main(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   RenderRequest render_request;
+  BenchRequest bench_request;
   CompareRequest compare_request;
   InfoRequest info_request;
   const CLI::App* render = AddRenderCommand(app, render_request);
+  const CLI::App* bench = AddBenchCommand(app, bench_request);
   const CLI::App* compare = AddCompareCommand(app, compare_request);
   const CLI::App* info = AddInfoCommand(app, info_request);
   if (argc < 2) {
@@ -127,6 +131,7 @@ ExitCode Main(int argc, char** argv) {
     return ReportParse(app, error);
   }
   if (render->parsed()) return ToExitCode(RunRender(render_request));
+  if (bench->parsed()) return ToExitCode(RunBench(bench_request));
   if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
   if (info->parsed()) return ToExitCode(RunInfo(info_request));
   return ExitCode::kInternal;

@@ -229,10 +229,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
       ->option_text("auto|plain|none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
   render->add_flag("-q,--quiet", request.quiet, "Only errors on stderr");
-  // A flag that may hold a value: an option would swallow the word after it.
-  render->add_flag("--json{-}", request.statistics, "Statistics as JSON to stdout, or into FILE")
-      ->option_text("[=FILE]")
-      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  AddJson(*render, request.statistics, "Statistics as JSON to stdout, or into FILE");
   return render;
 }
 
