@@ -4,20 +4,16 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "bench/frame_scenes.h"
-#include "bench/write_pov.h"
 #include "simd/target.h"
-#include "src/core/atomic_file.h"
+#include "src/formats/pov_ray.h"
 #include "src/formats/scene_json.h"
 #include "src/render/render.h"
 
@@ -65,49 +61,16 @@ void Register(const std::string& name, std::function<void(benchmark::State&)> ru
 
 // ---- POV-Ray ----
 
-bool HasPovRay() { return std::system("command -v povray >/dev/null 2>&1") == 0; }
-
-// The processor seconds that POV-Ray says it traced for, without parsing; nothing where it failed.
-std::optional<double> PovSeconds(const std::string& path, int width, int height) {
-  const std::string command =
-      fmt::format("povray +I'{}' +W{} +H{} -A -D -F +WT1 2>&1", path, width, height);
-  std::FILE* output = popen(command.c_str(), "r");
-  if (output == nullptr) return std::nullopt;
-  std::optional<double> seconds;
-  bool in_trace = false;
-  std::array<char, 512> line;
-  while (std::fgets(line.data(), line.size(), output) != nullptr) {
-    // "Trace Time: ..." is followed by "using 1 thread(s) with 0.845 CPU-seconds total".
-    const std::string text = line.data();
-    if (text.find("Time:") != std::string::npos) {
-      in_trace = text.find("Trace Time:") != std::string::npos;
-    }
-    double value = 0;
-    const std::size_t at = text.find("with ");
-    if (in_trace && at != std::string::npos &&
-        std::sscanf(text.c_str() + at, "with %lf CPU-seconds", &value) == 1) {
-      seconds = value;
-    }
-  }
-  return pclose(output) == 0 ? seconds : std::nullopt;
-}
-
-void RenderWithPovRay(benchmark::State& state, const Scene& scene, const Camera& camera) {
-  const std::string path = fmt::format("{}/sheaf-frame-bench.pov", P_tmpdir);
-  if (!WriteFileWhole(path, bench::PovText(scene, camera))) {
-    state.SkipWithError("the scene cannot be written");
-    return;
-  }
+void TimePovRay(benchmark::State& state, const Scene& scene, const Camera& camera) {
   for (auto _ : state) {
-    const std::optional<double> seconds =
-        PovSeconds(path, scene.settings.width, scene.settings.height);
-    if (!seconds) {
-      state.SkipWithError("POV-Ray failed");
-      break;
+    const Result<PovRender> render = RenderWithPovRay(
+        scene, camera, scene.settings.width, scene.settings.height, "-A", PovPicture::kNone);
+    if (!render) {
+      state.SkipWithError(render.error().message.c_str());
+      return;
     }
-    state.SetIterationTime(*seconds);
+    state.SetIterationTime(render.value().seconds);
   }
-  std::remove(path.c_str());
 }
 
 // ---- What a feature costs ----
@@ -199,9 +162,8 @@ int main(int argc, char** argv) {
         });
       }
       if (has_pov_ray) {
-        Register(row + "povray", [&shown, &camera](benchmark::State& state) {
-          RenderWithPovRay(state, shown, camera);
-        });
+        Register(row + "povray",
+                 [&shown, &camera](benchmark::State& state) { TimePovRay(state, shown, camera); });
       }
     }
   }

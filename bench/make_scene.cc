@@ -8,8 +8,8 @@
 #include <string>
 
 #include "bench/frame_scenes.h"
-#include "bench/write_pov.h"
 #include "src/core/atomic_file.h"
+#include "src/formats/pov_ray.h"
 #include "src/formats/write_scene_json.h"
 
 int main(int argc, char** argv) {
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   }
   const sheaf::Scene scene = found->make();
   const std::string text =
-      for_pov ? sheaf::bench::PovText(scene, scene.cameras.at(0)) : sheaf::SceneJsonText(scene);
+      for_pov ? sheaf::PovText(scene, scene.cameras.at(0)) : sheaf::SceneJsonText(scene);
   if (output.empty()) {
     const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     return written ? EXIT_SUCCESS : 4;

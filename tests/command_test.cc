@@ -158,6 +158,7 @@ TEST_CASE("help and version go to stdout") {
                                                                      {"render", "--help"},
                                                                      {"compare", "--help"},
                                                                      {"bench", "--help"},
+                                                                     {"pareto", "--help"},
                                                                      {"info", "--help"}}) {
     const Outcome help = work.Run(arguments);
     CHECK(help.code == 0);
@@ -257,6 +258,45 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   CHECK(work.Run(few).code == 4);
   CHECK(work.Run({"bench", kScene, "--baseline", work / "none"}).code == 4);
   CHECK(work.Run({"bench", kScene, "--targets", "avx9"}).code == 2);
+}
+
+TEST_CASE("pareto charts time against error") {
+  const Workspace work;
+  const Outcome outcome =
+      work.Run({"pareto", kScene, "--size", "24x18", "--reference-spp", "32", "--repetitions", "1",
+                "--error", "0.05", "--time", "1e9", "-o", work / "report"});
+  REQUIRE(outcome.code == 0);
+  CHECK(Contains(outcome.out, "cheapest for error 0.05: "));
+  const json report = json::parse(ReadText(work / "report/front.json"));
+  CHECK(report["reference_samples"] == 32);
+  double least = 1, best_on_front = 1, converged = 1;
+  int on_front = 0;
+  for (const json& point : report["points"]) {
+    const double error = point["error"], numeric = point["numeric"], sampling = point["sampling"];
+    least = std::min(least, error);
+    if (point["front"]) {
+      ++on_front;
+      best_on_front = std::min(best_on_front, error);
+    }
+    if (point["renderer"] == "POV-Ray") continue;
+    CHECK(point["seconds"].get<double>() > 0);
+    // The two parts of an error bound it.
+    CHECK(error <= numeric + sampling + 1e-12);
+    if (point["setting"] == "double, 32 spp, depth 5") converged = error;
+    if (point["setting"] == "strict, 1 spp, depth 5") CHECK(error > 0.01);
+  }
+  CHECK(report["points"].size() > 200);
+  CHECK(on_front >= 2);
+  CHECK(best_on_front == least);
+  CHECK(converged == 0);  // the reference's own samples
+  const std::string csv = ReadText(work / "report/front.csv");
+  CHECK(LineCount(csv) == report["points"].size() + 1);
+  if (std::system("command -v gnuplot >/dev/null 2>&1") == 0) {
+    CHECK(fs::exists(work / "report/front.svg"));
+    CHECK(fs::exists(work / "report/front.png"));
+  }
+  CHECK(work.Run({"pareto", kScene, "-o", "/proc/none"}).code == 4);
+  CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--error", "-1"}).code == 2);
 }
 
 TEST_CASE("compare measures pictures, and --fail decides") {

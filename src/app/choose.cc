@@ -101,4 +101,22 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
   return cameras;
 }
 
+Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {
+  std::string path = output;
+  std::size_t at = path.find(kCameraField);
+  if (at == std::string::npos) return path;
+  const bool plain = std::none_of(camera.begin(), camera.end(), [](char c) {
+    return c == '/' || (static_cast<unsigned char>(c) < 0x20);
+  });
+  if (!plain || camera.empty()) {
+    return Usage(
+        fmt::format("-o {}: the camera \"{}\" has no name for a file", output, Printable(camera)));
+  }
+  while (at != std::string::npos) {
+    path.replace(at, kCameraField.size(), camera);
+    at = path.find(kCameraField, at + camera.size());
+  }
+  return path;
+}
+
 }  // namespace sheaf

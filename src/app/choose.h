@@ -33,6 +33,12 @@ struct CameraChoice {
 Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
                                                  const std::string& path, const Scene& scene);
 
+// Where this stands in an output's path, the camera's name goes.
+inline constexpr std::string_view kCameraField = "{camera}";
+
+// Puts the camera's name there, unless it would lead into another folder.
+Result<std::string> ExpandPath(const std::string& output, const std::string& camera);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_APP_CHOOSE_H_

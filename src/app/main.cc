@@ -15,6 +15,7 @@
 #include "src/app/compare_command.h"
 #include "src/app/exit_code.h"
 #include "src/app/info_command.h"
+#include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
 #include "src/app/standard_output.h"
 #include "src/core/version.h"
@@ -32,6 +33,7 @@ Examples:
   sheaf compare scene.json --targets all --threads 1,2
   sheaf compare expected.png found.png --fail psnr=40
   sheaf bench scene.json --baseline before.json
+  sheaf pareto scene.json -o report/
   sheaf info scene.json
 
 Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
@@ -117,10 +119,12 @@ ExitCode Main(int argc, char** argv) {
   BenchRequest bench_request;
   CompareRequest compare_request;
   InfoRequest info_request;
+  ParetoRequest pareto_request;
   const CLI::App* render = AddRenderCommand(app, render_request);
   const CLI::App* bench = AddBenchCommand(app, bench_request);
   const CLI::App* compare = AddCompareCommand(app, compare_request);
   const CLI::App* info = AddInfoCommand(app, info_request);
+  const CLI::App* pareto = AddParetoCommand(app, pareto_request);
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::kUsage;
@@ -134,6 +138,7 @@ ExitCode Main(int argc, char** argv) {
   if (bench->parsed()) return ToExitCode(RunBench(bench_request));
   if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
   if (info->parsed()) return ToExitCode(RunInfo(info_request));
+  if (pareto->parsed()) return ToExitCode(RunPareto(pareto_request));
   return ExitCode::kInternal;
 }
 

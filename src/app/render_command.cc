@@ -23,8 +23,6 @@
 namespace sheaf {
 namespace {
 
-constexpr std::string_view kCameraField = "{camera}";
-
 // One picture to make.
 struct Frame {
   const Camera* camera;
@@ -73,25 +71,6 @@ Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& 
     }
   }
   return Done{};
-}
-
-// Puts the camera's name into the path, unless it would lead into another folder.
-Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {
-  std::string path = output;
-  std::size_t at = path.find(kCameraField);
-  if (at == std::string::npos) return path;
-  const bool plain = std::none_of(camera.begin(), camera.end(), [](char c) {
-    return c == '/' || (static_cast<unsigned char>(c) < 0x20);
-  });
-  if (!plain || camera.empty()) {
-    return Usage(
-        fmt::format("-o {}: the camera \"{}\" has no name for a file", output, Printable(camera)));
-  }
-  while (at != std::string::npos) {
-    path.replace(at, kCameraField.size(), camera);
-    at = path.find(kCameraField, at + camera.size());
-  }
-  return path;
 }
 
 Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {

@@ -33,23 +33,30 @@ Film Decoded(Film film) {
 
 PictureMetrics MeasurePictures(const Film& reference, const Film& test, Transfer transfer) {
   PictureMetrics metrics;
-  double sum = 0;
   for (std::size_t i = 0; i < reference.rgb.size(); i += 3) {
     double most = 0;
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const double difference = Difference(reference.rgb[i + channel], test.rgb[i + channel]);
-      sum += difference * difference;
       most = std::max(most, difference);
     }
     metrics.largest = std::max(metrics.largest, most);
     // Bytes apart by one are 1/255 apart, give or take the rounding of a division.
     metrics.over += most > 1.0 / 255 + 1e-6;
   }
-  metrics.rmse = std::sqrt(sum / static_cast<double>(reference.rgb.size()));
+  metrics.rmse = RootMeanSquare(reference, test);
   metrics.psnr = -20 * std::log10(metrics.rmse);
   metrics.mean_flip = transfer == Transfer::kLinear ? MeanFlip(reference, test)
                                                     : MeanFlip(Decoded(reference), Decoded(test));
   return metrics;
+}
+
+double RootMeanSquare(const Film& reference, const Film& test) {
+  double sum = 0;
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
+    const double difference = Difference(reference.rgb[i], test.rgb[i]);
+    sum += difference * difference;
+  }
+  return std::sqrt(sum / static_cast<double>(reference.rgb.size()));
 }
 
 std::uint32_t UlpDistance(float a, float b) {

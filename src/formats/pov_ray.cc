@@ -1,14 +1,21 @@
-#include "bench/write_pov.h"
+#include "src/formats/pov_ray.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <iterator>
+#include <optional>
 #include <variant>
 
-namespace sheaf::bench {
+namespace sheaf {
 namespace {
 
 using Out = std::back_insert_iterator<std::string>;
@@ -100,6 +107,72 @@ void WriteTriangle(Out out, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   fmt::format_to(out, "triangle {{ {}, {}, {} }}\n", Vector(a), Vector(b), Vector(c));
 }
 
+// A folder that goes away with the object; its path is empty where none could be made.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "sheaf-XXXXXX").string();
+    if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// "Trace Time: ..." is followed by "using 1 thread(s) with 0.845 CPU-seconds total".
+std::optional<double> TraceSeconds(std::FILE* output) {
+  std::optional<double> seconds;
+  bool in_trace = false;
+  std::array<char, 512> line;
+  while (std::fgets(line.data(), static_cast<int>(line.size()), output) != nullptr) {
+    const std::string text = line.data();
+    if (text.find("Time:") != std::string::npos) {
+      in_trace = text.find("Trace Time:") != std::string::npos;
+    }
+    const std::size_t at = text.find("with ");
+    double value = 0;
+    if (in_trace && at != std::string::npos &&
+        std::sscanf(text.c_str() + at, "with %lf CPU-seconds", &value) == 1) {
+      seconds = value;
+    }
+  }
+  return seconds;
+}
+
+// A binary PPM of 16 bits, big endian, as POV-Ray writes it. Empty where it is anything else.
+Film ReadPpm16(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string magic;
+  int width = 0, height = 0, most = 0;
+  file >> magic;
+  // Comments, of whole lines, may come before the numbers.
+  while (file >> std::ws && file.peek() == '#') {
+    std::string comment;
+    std::getline(file, comment);
+  }
+  file >> width >> height >> most;
+  file.get();
+  const bool sound = file && magic == "P6" && most == 65535 && width > 0 && height > 0 &&
+                     width <= kMaxImageSide && height <= kMaxImageSide;
+  if (!sound) return {};
+  Film film(width, height);
+  std::string bytes(2 * film.rgb.size(), '\0');
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return {};
+  for (std::size_t i = 0; i < film.rgb.size(); ++i) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[2 * i + k]); };
+    film.rgb[i] = static_cast<float>((byte(0) << 8 | byte(1)) / 65535.0);
+  }
+  return film;
+}
+
 }  // namespace
 
 std::string PovText(const Scene& scene, const Camera& camera) {
@@ -147,4 +220,37 @@ std::string PovText(const Scene& scene, const Camera& camera) {
   return text;
 }
 
-}  // namespace sheaf::bench
+bool HasPovRay() { return std::system("command -v povray >/dev/null 2>&1") == 0; }
+
+Result<PovRender> RenderWithPovRay(const Scene& scene, const Camera& camera, int width, int height,
+                                   const std::string& antialiasing, PovPicture picture) {
+  const auto failed = [](const std::string& what) {
+    return Error{ErrorKind::kInputOutput, "POV-Ray: " + what};
+  };
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return failed("no temporary folder");
+  Scene shown = scene;  // its size is the camera's aspect
+  shown.settings.width = width;
+  shown.settings.height = height;
+  std::ofstream(folder.path() + "/scene.pov") << PovText(shown, camera);
+  const std::string output =
+      picture == PovPicture::kNone
+          ? "-F"
+          : fmt::format("+FP16 File_Gamma=1.0 +O'{}/picture.ppm'", folder.path());
+  const std::string command = fmt::format("povray +I'{}/scene.pov' +W{} +H{} {} -D +WT1 {} 2>&1",
+                                          folder.path(), width, height, antialiasing, output);
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return failed("it did not start");
+  const std::optional<double> seconds = TraceSeconds(pipe);
+  if (pclose(pipe) != 0 || !seconds) return failed("it did not render the scene");
+  PovRender render{*seconds, {}};
+  if (picture == PovPicture::kRead) {
+    render.film = ReadPpm16(folder.path() + "/picture.ppm");
+    if (render.film.width != width || render.film.height != height) {
+      return failed("its picture cannot be read");
+    }
+  }
+  return render;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,286 @@
+#include "src/app/pareto_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "simd/target.h"
+#include "src/app/add_options.h"
+#include "src/app/interrupt.h"
+#include "src/app/pareto_report.h"
+#include "src/app/progress.h"
+#include "src/app/standard_output.h"
+#include "src/core/atomic_file.h"
+#include "src/core/rank_statistics.h"
+#include "src/formats/pov_ray.h"
+#include "src/formats/printable.h"
+#include "src/formats/scene_json.h"
+#include "src/render/picture_metrics.h"
+#include "src/render/render.h"
+
+namespace sheaf {
+namespace {
+
+constexpr int kSamples[] = {1, 2, 4, 8, 16, 32, 64};
+constexpr double kContrasts[] = {0.02, 0.05, 0.1};
+constexpr double kWeights[] = {0, 0.01, 0.05};
+
+// What renders one point. Targets have the same bits, so they share a picture.
+struct Setting {
+  std::string target;
+  RenderOptions options;
+
+  std::string Name() const {
+    std::string name =
+        fmt::format("{}, {} spp", options.precision == Precision::kDouble ? "double" : "strict",
+                    options.samples);
+    if (options.contrast) name += fmt::format(", adaptive {:g}", *options.contrast);
+    if (options.min_weight > 0) name += fmt::format(", min-weight {:g}", options.min_weight);
+    return name + fmt::format(", depth {}", options.max_depth);
+  }
+};
+
+// All trades on the best target; sample counts alone in double, and on every other target.
+std::vector<Setting> ListSettings(const RenderOptions& base) {
+  const std::vector<std::string> usable = simd::UsableTargets();
+  std::vector<int> depths = {base.max_depth};
+  for (const int less : {2, 3}) {
+    if (less < base.max_depth) depths.push_back(less);
+  }
+  std::vector<Setting> settings;
+  for (const int samples : kSamples) {
+    Setting setting{usable.front(), base};
+    setting.options.samples = samples;
+    for (const int depth : depths) {
+      for (const double weight : kWeights) {
+        setting.options.max_depth = depth;
+        setting.options.min_weight = weight;
+        setting.options.contrast.reset();
+        settings.push_back(setting);
+        for (const double contrast : kContrasts) {
+          if (samples == 1) break;
+          setting.options.contrast = contrast;
+          settings.push_back(setting);
+        }
+      }
+    }
+    Setting plain{usable.front(), base};
+    plain.options.samples = samples;
+    plain.options.precision = Precision::kDouble;
+    settings.push_back(plain);
+    plain.options.precision = Precision::kStrict;
+    for (std::size_t i = 1; i <= usable.size(); ++i) {
+      plain.target = i < usable.size() ? usable[i] : "scalar";
+      if (samples <= 4) settings.push_back(plain);
+    }
+  }
+  return settings;
+}
+
+// As a display shows it: what is brighter than white would weigh more than anything seen.
+Film Shown(Film film) {
+  for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
+  return film;
+}
+
+struct Timed {
+  Film film;
+  double seconds;  // median
+};
+
+Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting,
+                          int repetitions) {
+  if (const Status chosen = ChooseTarget(setting.target); !chosen) return chosen.error();
+  RenderOptions options = setting.options;
+  options.engine = setting.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  std::vector<double> seconds;
+  Timed timed;
+  for (int i = 0; i < repetitions; ++i) {
+    FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
+    RenderStats stats;
+    Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
+    if (!film) return film.error();
+    timed.film = Shown(std::move(film).value());
+    seconds.push_back(stats.wall_seconds);
+  }
+  timed.seconds = Median(seconds);
+  return timed;
+}
+
+// The error of a picture in two parts: its samples in double against the converged picture, and the
+// picture against its samples in double; otherwise antialiasing would hide the arithmetic.
+Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Setting setting,
+                                   int repetitions, const Film& converged) {
+  const Result<Timed> timed = RenderTimed(scene, camera, setting, repetitions);
+  if (!timed) return timed.error();
+  ParetoPoint point{setting.target,
+                    setting.Name(),
+                    timed.value().seconds,
+                    RootMeanSquare(converged, timed.value().film),
+                    0,
+                    0,
+                    false};
+  point.sampling = point.error;
+  if (setting.options.precision == Precision::kDouble) return point;
+  setting.target = simd::UsableTargets().front();
+  setting.options.precision = Precision::kDouble;
+  setting.options.threads = 0;
+  const Result<Timed> exact = RenderTimed(scene, camera, setting, 1);
+  if (!exact) return exact.error();
+  point.numeric = RootMeanSquare(exact.value().film, timed.value().film);
+  point.sampling = RootMeanSquare(converged, exact.value().film);
+  return point;
+}
+
+// POV-Ray's own antialiasing, where it is installed and knows the projection.
+Status MeasurePovRay(const Scene& scene, const Camera& camera, const RenderOptions& base,
+                     int repetitions, const Film& converged, std::vector<ParetoPoint>& points) {
+  if (!HasPovRay() || !std::holds_alternative<Perspective>(camera.projection)) return Done{};
+  for (const char* antialiasing :
+       {"-A", "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4", "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"}) {
+    std::vector<double> seconds;
+    ParetoPoint point{"POV-Ray", antialiasing, 0, 0, 0, 0, false};
+    for (int i = 0; i < repetitions; ++i) {
+      if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
+      const Result<PovRender> render =
+          RenderWithPovRay(scene, camera, base.width, base.height, antialiasing, PovPicture::kRead);
+      if (!render) return render.error();
+      seconds.push_back(render.value().seconds);
+      point.error = point.sampling = RootMeanSquare(converged, render.value().film);
+    }
+    point.seconds = Median(seconds);
+    points.push_back(point);
+  }
+  return Done{};
+}
+
+void Say(const ParetoRequest& request, const std::string& line) {
+  if (!request.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, const Scene& scene,
+                                               const Camera& camera, const RenderOptions& base,
+                                               int repetitions) {
+  Setting reference{simd::UsableTargets().front(), base};
+  reference.options.precision = Precision::kDouble;
+  reference.options.samples = request.reference_samples.value_or(256);
+  reference.options.threads = 0;
+  const std::string name = Printable(camera.name);
+  Say(request, fmt::format("{}: the converged picture, {}", name, reference.Name()));
+  const Result<Timed> converged = RenderTimed(scene, camera, reference, 1);
+  if (!converged) return converged.error();
+  const Film& film = converged.value().film;
+
+  const std::vector<Setting> settings = ListSettings(base);
+  std::vector<ParetoPoint> points;
+  for (const Setting& setting : settings) {
+    if (points.size() % 20 == 0) {
+      Say(request, fmt::format("{}: {} of {} settings", name, points.size(), settings.size()));
+    }
+    Result<ParetoPoint> point = MeasureSetting(scene, camera, setting, repetitions, film);
+    if (!point) return point.error();
+    points.push_back(std::move(point).value());
+  }
+  if (HasPovRay()) Say(request, name + ": POV-Ray");
+  const Status peer = MeasurePovRay(scene, camera, base, repetitions, film, points);
+  if (!peer && peer.error().kind == ErrorKind::kInterrupted) return peer.error();
+  if (!peer)
+    std::fprintf(stderr, "sheaf: %s; the report goes without it\n", peer.error().message.c_str());
+  MarkFront(points);
+  return points;
+}
+
+std::string FrontText(const ParetoRequest& request, std::vector<ParetoPoint> points) {
+  std::sort(points.begin(), points.end(),
+            [](const ParetoPoint& a, const ParetoPoint& b) { return a.seconds < b.seconds; });
+  std::string text;
+  for (const ParetoPoint& point : points) {
+    if (point.is_on_front) text += PointText(point);
+  }
+  const auto answer = [&](const std::string& what, const ParetoPoint* point) {
+    text += what + (point ? PointText(*point) : "no setting\n");
+  };
+  if (request.error) {
+    answer(fmt::format("cheapest for error {:g}: ", *request.error),
+           CheapestFor(points, *request.error));
+  }
+  if (request.time) {
+    answer(fmt::format("best for {:g} s: ", *request.time), BestFor(points, *request.time));
+  }
+  return text;
+}
+
+}  // namespace
+
+CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
+  CLI::App* pareto =
+      app.add_subcommand("pareto", "Chart run time against error over a scene's settings");
+  pareto->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
+  AddCameraChoice(*pareto, request.choice);
+  pareto->add_option("-o,--output", request.output, "The folder for the report (needed)")
+      ->required()
+      ->option_text("FOLDER");
+  AddParsed(*pareto, "--size", request.size, "WxH",
+            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
+            "Pixels of the picture", &ParseSize);
+  AddInteger(*pareto, "--reference-spp", request.reference_samples, 1, kMaxSamples,
+             "Samples a pixel of the converged picture, in double; 256 if absent");
+  AddInteger(*pareto, "--repetitions", request.repetitions, 1, 1000,
+             "Frames of each setting, of which the median counts; 3 if absent");
+  AddInteger(*pareto, "--threads", request.threads, 0, kMaxThreads, "Threads; 1 if absent");
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  const auto parse = [](const std::string& text) { return ParseNumber(text, 0, kMost); };
+  AddParsed(*pareto, "--error", request.error, "E", "a number from 0",
+            "Name the cheapest setting of at most this RMSE", parse);
+  AddParsed(*pareto, "--time", request.time, "SECONDS", "a number from 0",
+            "Name the best setting that takes at most this long", parse);
+  pareto->add_flag("-q,--quiet", request.quiet, "Only errors on stderr");
+  return pareto;
+}
+
+Status RunPareto(const ParetoRequest& request) {
+  const Result<Scene> scene = ReadSceneJson(request.scene);
+  if (!scene) return scene.error();
+  const auto cameras = ChooseCameras(request.choice, request.scene, scene.value());
+  if (!cameras) return cameras.error();
+  std::error_code error;
+  std::filesystem::create_directories(request.output, error);
+  const Status writable = CheckWritable(request.output + "/report.json");
+  if (!writable) return writable;
+
+  const Settings& settings = scene.value().settings;
+  RenderOptions base;
+  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
+  base.width = size.width;
+  base.height = size.height;
+  base.max_depth = settings.max_depth;
+  base.threads = request.threads.value_or(1);
+  const int repetitions = request.repetitions.value_or(3);
+  CatchInterrupts();
+  for (const Camera* camera : cameras.value()) {
+    const auto points = MeasureCamera(request, scene.value(), *camera, base, repetitions);
+    if (!points) return points.error();
+    const ParetoTitle title{request.scene,
+                            camera->name,
+                            base.width,
+                            base.height,
+                            request.reference_samples.value_or(256),
+                            base.threads,
+                            repetitions};
+    const Result<std::string> stem = ExpandPath(request.output + "/{camera}", camera->name);
+    if (!stem) return stem.error();
+    const auto paths = WriteParetoReport(title, points.value(), stem.value());
+    if (!paths) return paths.error();
+    const Status written = WriteStandardOutput(FrontText(request, points.value()));
+    if (!written) return written;
+    for (const std::string& path : paths.value()) Say(request, "wrote " + path);
+  }
+  return Done{};
+}
+
+}  // namespace sheaf

@@ -1,0 +1,169 @@
+#include "src/app/pareto_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "src/core/atomic_file.h"
+#include "src/core/version.h"
+
+namespace sheaf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string CsvText(const std::vector<ParetoPoint>& points) {
+  std::string text = "renderer,setting,seconds,error,numeric,sampling,front\n";
+  const auto out = std::back_inserter(text);
+  for (const ParetoPoint& point : points) {
+    fmt::format_to(out, "{},\"{}\",{},{},{},{},{}\n", point.renderer, point.setting, point.seconds,
+                   point.error, point.numeric, point.sampling, point.is_on_front ? 1 : 0);
+  }
+  return text;
+}
+
+std::string JsonText(const ParetoTitle& title, const std::vector<ParetoPoint>& points) {
+  Json json = {{"sheaf", kVersion},        {"scene", title.scene},
+               {"camera", title.camera},   {"width", title.width},
+               {"height", title.height},   {"reference_samples", title.reference_samples},
+               {"threads", title.threads}, {"repetitions", title.repetitions},
+               {"points", Json::array()}};
+  for (const ParetoPoint& point : points) {
+    json["points"].push_back({{"renderer", point.renderer},
+                              {"setting", point.setting},
+                              {"seconds", point.seconds},
+                              {"error", point.error},
+                              {"numeric", point.numeric},
+                              {"sampling", point.sampling},
+                              {"front", point.is_on_front}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// Gnuplot takes a text in double quotes with C's escapes.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return quoted + "\"";
+}
+
+// One mark a setting, a colour a renderer, and the front as a line of steps.
+std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>& points,
+                        const std::string& stem) {
+  std::set<std::string> renderers;
+  for (const ParetoPoint& point : points) renderers.insert(point.renderer);
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto block = [&](const std::string& name, auto keep) {
+    fmt::format_to(out, "${} << END\n", name);
+    std::vector<std::pair<double, double>> rows;
+    for (const ParetoPoint& point : points) {
+      if (keep(point)) rows.emplace_back(1e3 * point.seconds, point.error);
+    }
+    std::sort(rows.begin(), rows.end());
+    for (const auto& [milliseconds, error] : rows) {
+      fmt::format_to(out, "{} {}\n", milliseconds, error);
+    }
+    text += "END\n";
+  };
+  int index = 0;
+  std::string plots;
+  for (const std::string& renderer : renderers) {
+    block(fmt::format("r{}", index), [&](const ParetoPoint& p) { return p.renderer == renderer; });
+    plots += fmt::format(", $r{} with points pt {} ps 0.8 title {}", index, 5 + 2 * (index % 5),
+                         Quoted(renderer));
+    ++index;
+  }
+  block("front", [](const ParetoPoint& p) { return p.is_on_front; });
+  fmt::format_to(
+      out,
+      "set title {} noenhanced\n"
+      "set xlabel \"milliseconds a frame\"\nset ylabel \"error (RMSE)\"\n"
+      "set logscale xy\nset grid\nset key outside noenhanced\n",
+      Quoted(fmt::format("{}, {}, {}x{}, {} thread{}", title.scene, title.camera, title.width,
+                         title.height, title.threads, title.threads == 1 ? "" : "s")));
+  for (const auto& [terminal, ending] : {std::pair("svg size 900,600 background \"white\"", "svg"),
+                                         std::pair("pngcairo size 900,600", "png")}) {
+    fmt::format_to(out, "set terminal {}\nset output {}\n", terminal,
+                   Quoted(stem + ".part." + ending));
+    fmt::format_to(out, "plot $front with steps lw 2 lc rgb \"black\" title \"front\"{}\n", plots);
+  }
+  return text;
+}
+
+// Both pictures, or neither.
+bool DrawChart(const std::string& script, const std::string& stem) {
+  std::FILE* gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
+  if (gnuplot == nullptr) return false;
+  const bool fed = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  const bool drawn = pclose(gnuplot) == 0 && fed;
+  bool moved = drawn;
+  for (const char* ending : {".svg", ".png"}) {
+    std::error_code error;
+    const std::string part = stem + ".part" + ending;
+    if (drawn) std::filesystem::rename(part, stem + ending, error);
+    moved = moved && !error;
+    std::filesystem::remove(part, error);
+  }
+  return moved;
+}
+
+}  // namespace
+
+void MarkFront(std::vector<ParetoPoint>& points) {
+  for (ParetoPoint& point : points) {
+    point.is_on_front = std::none_of(points.begin(), points.end(), [&](const ParetoPoint& other) {
+      const bool as_good = other.seconds <= point.seconds && other.error <= point.error;
+      return as_good && (other.seconds < point.seconds || other.error < point.error);
+    });
+  }
+}
+
+const ParetoPoint* CheapestFor(const std::vector<ParetoPoint>& points, double error) {
+  const ParetoPoint* best = nullptr;
+  for (const ParetoPoint& point : points) {
+    if (point.error <= error && (!best || point.seconds < best->seconds)) best = &point;
+  }
+  return best;
+}
+
+const ParetoPoint* BestFor(const std::vector<ParetoPoint>& points, double seconds) {
+  const ParetoPoint* best = nullptr;
+  for (const ParetoPoint& point : points) {
+    if (point.seconds <= seconds && (!best || point.error < best->error)) best = &point;
+  }
+  return best;
+}
+
+std::string PointText(const ParetoPoint& point) {
+  return fmt::format("{:10} {:48} {:>9.2f} ms  error {:.3g}, numeric {:.2g}, sampling {:.3g}\n",
+                     point.renderer, point.setting, 1e3 * point.seconds, point.error, point.numeric,
+                     point.sampling);
+}
+
+Result<std::vector<std::string>> WriteParetoReport(const ParetoTitle& title,
+                                                   const std::vector<ParetoPoint>& points,
+                                                   const std::string& stem) {
+  std::vector<std::string> paths = {stem + ".csv", stem + ".json"};
+  const Status table = WriteFileWhole(paths[0], CsvText(points));
+  if (!table) return table.error();
+  const Status json = WriteFileWhole(paths[1], JsonText(title, points));
+  if (!json) return json.error();
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return paths;
+  if (!DrawChart(GnuplotText(title, points, stem), stem)) {
+    return Error{ErrorKind::kInputOutput, fmt::format("{}.svg: gnuplot could not draw it", stem)};
+  }
+  paths.insert(paths.end(), {stem + ".svg", stem + ".png"});
+  return paths;
+}
+
+}  // namespace sheaf
