@@ -158,6 +158,7 @@ TEST_CASE("help and version go to stdout") {
                                                                      {"render", "--help"},
                                                                      {"compare", "--help"},
                                                                      {"bench", "--help"},
+                                                                     {"stress", "--help"},
                                                                      {"pareto", "--help"},
                                                                      {"info", "--help"}}) {
     const Outcome help = work.Run(arguments);
@@ -297,6 +298,24 @@ TEST_CASE("pareto charts time against error") {
   }
   CHECK(work.Run({"pareto", kScene, "-o", "/proc/none"}).code == 4);
   CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--error", "-1"}).code == 2);
+}
+
+TEST_CASE("stress runs every case, and one ray again") {
+  const Workspace work;
+  const Outcome list = work.Run({"stress", "--list"});
+  CHECK(list.code == 0);
+  CHECK(LineCount(list.out) >= 50);
+  const Outcome all = work.Run({"stress"});
+  CHECK_MESSAGE(all.code == 0, all.out);
+  CHECK(LineCount(all.out) == LineCount(list.out) + 1);
+  CHECK(Contains(all.out, "0 of "));
+  const Outcome replayed =
+      work.Run({"stress", "on-sphere", "--replay", "0,0,0x1.8p+1,0,0,-0x1p+0,0,0x1p+9,2147483647"});
+  CHECK(replayed.code == 0);
+  CHECK(Contains(replayed.out, "primitive 0, t 0x1p+1"));
+  CHECK(Contains(work.Run({"stress", "on-spere"}).err, "did you mean \"on-sphere\"?"));
+  CHECK(work.Run({"stress", "on-sphere", "--replay", "1,2,3"}).code == 2);
+  CHECK(work.Run({"stress", "--replay", "0,0,3,0,0,-1,0,1,0"}).code == 2);
 }
 
 TEST_CASE("compare measures pictures, and --fail decides") {

@@ -1,5 +1,5 @@
-// Includes point downward: app -> render -> {scalar, bvh, stream, formats} -> scene -> core ->
-// simd/layout.h, and kernels include only simd/. A header carries the guard of its path.
+// Includes point downward: app -> stress -> render -> {scalar, bvh, stream, formats} -> scene ->
+// core -> simd/layout.h, and kernels include only simd/. A header carries the guard of its path.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -77,17 +77,22 @@ const std::map<std::string, std::set<std::string>>& Below() {
     layers.insert("src/render");
     return layers;
   }();
+  static const std::set<std::string> kStress = [] {
+    std::set<std::string> layers = kRender;
+    layers.insert("src/stress");
+    return layers;
+  }();
   static const std::map<std::string, std::set<std::string>> kBelow = {
-      {"src/core", {}},        {"src/scene", kCore},   {"src/scalar", kScene},
-      {"src/bvh", kBvh},       {"src/stream", kScene}, {"src/formats", kScene},
-      {"src/render", kMiddle}, {"src/app", kRender}};
+      {"src/core", {}},        {"src/scene", kCore},    {"src/scalar", kScene},
+      {"src/bvh", kBvh},       {"src/stream", kScene},  {"src/formats", kScene},
+      {"src/render", kMiddle}, {"src/stress", kRender}, {"src/app", kStress}};
   return kBelow;
 }
 
 bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   if (EndsWith(header, "-inl.h")) return false;
   if (header == "simd/layout.h" || layer == "src/render") return true;
-  if (layer == "src/app") return header == "simd/target.h";
+  if (layer == "src/app" || layer == "src/stress") return header == "simd/target.h";
   if (layer == "src/bvh") {
     return header == "simd/trace_closest.h" || header == "simd/trace_occluded.h";
   }

@@ -18,6 +18,7 @@
 #include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
 #include "src/app/standard_output.h"
+#include "src/app/stress_command.h"
 #include "src/core/version.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
@@ -34,6 +35,7 @@ Examples:
   sheaf compare expected.png found.png --fail psnr=40
   sheaf bench scene.json --baseline before.json
   sheaf pareto scene.json -o report/
+  sheaf stress
   sheaf info scene.json
 
 Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
@@ -120,11 +122,13 @@ ExitCode Main(int argc, char** argv) {
   CompareRequest compare_request;
   InfoRequest info_request;
   ParetoRequest pareto_request;
+  StressRequest stress_request;
   const CLI::App* render = AddRenderCommand(app, render_request);
   const CLI::App* bench = AddBenchCommand(app, bench_request);
   const CLI::App* compare = AddCompareCommand(app, compare_request);
   const CLI::App* info = AddInfoCommand(app, info_request);
   const CLI::App* pareto = AddParetoCommand(app, pareto_request);
+  const CLI::App* stress = AddStressCommand(app, stress_request);
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::kUsage;
@@ -139,6 +143,7 @@ ExitCode Main(int argc, char** argv) {
   if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
   if (info->parsed()) return ToExitCode(RunInfo(info_request));
   if (pareto->parsed()) return ToExitCode(RunPareto(pareto_request));
+  if (stress->parsed()) return ToExitCode(RunStress(stress_request));
   return ExitCode::kInternal;
 }
 

@@ -1,0 +1,99 @@
+#include "src/app/stress_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "src/app/choose.h"
+#include "src/app/interrupt.h"
+#include "src/app/standard_output.h"
+#include "src/formats/printable.h"
+#include "src/formats/suggest_name.h"
+#include "src/stress/stress.h"
+
+namespace sheaf {
+namespace {
+
+std::vector<stress::Case> AllCases() {
+  std::vector<stress::Case> cases(stress::RayCases().begin(), stress::RayCases().end());
+  cases.insert(cases.end(), stress::PictureCases().begin(), stress::PictureCases().end());
+  return cases;
+}
+
+Result<std::vector<stress::Case>> ChooseCases(const std::vector<std::string>& names) {
+  const std::vector<stress::Case> all = AllCases();
+  if (names.empty()) return all;
+  std::vector<stress::Case> chosen;
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const stress::Case& c) { return name == c.name; });
+    if (found == all.end()) {
+      std::vector<std::string_view> known;
+      for (const stress::Case& c : all) known.push_back(c.name);
+      return Usage(fmt::format("unknown case \"{}\"{} (--list shows them)", Printable(name),
+                               DidYouMean(name, known)));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+CLI::App* AddStressCommand(CLI::App& app, StressRequest& request) {
+  CLI::App* stress = app.add_subcommand("stress", "Run the stress cases of the numerics");
+  stress->add_option("CASE", request.cases, "The cases; all if absent")->option_text("...");
+  stress->add_flag("--list", request.list, "The cases and what is expected of each");
+  stress->add_flag("--thorough", request.thorough, "More and larger: minutes to hours");
+  stress
+      ->add_option("--replay", request.replay,
+                   "A ray as a failure prints it, traced in the one case that is named")
+      ->option_text("RAY");
+  return stress;
+}
+
+Result<ExitCode> RunStress(const StressRequest& request) {
+  const auto cases = ChooseCases(request.cases);
+  if (!cases) return cases.error();
+  if (request.list) {
+    std::string text;
+    for (const stress::Case& c : cases.value()) {
+      text += fmt::format("{:22}{}\n", c.name, c.expected);
+    }
+    const Status written = WriteStandardOutput(text);
+    if (!written) return written.error();
+    return ExitCode::kOk;
+  }
+  std::optional<stress::Ray> replay;
+  if (!request.replay.empty()) {
+    replay = stress::ParseRay(request.replay);
+    if (!replay) return Usage(fmt::format("--replay: \"{}\" is no ray", Printable(request.replay)));
+    if (request.cases.size() != 1) return Usage("--replay: it takes the one case that is named");
+  }
+  CatchInterrupts();
+  std::size_t failed = 0;
+  for (const stress::Case& c : cases.value()) {
+    if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
+    stress::Report report(request.thorough ? stress::Effort::kThorough : stress::Effort::kUsual,
+                          replay);
+    c.run(report);
+    // A case that checks nothing has shown nothing.
+    const bool passed = report.failures() == 0 && report.checks() > 0;
+    failed += !passed;
+    std::string text = fmt::format("{:6} {:22}{}\n", passed ? "ok" : "FAILED", c.name, c.expected);
+    for (const std::string& line : report.lines()) text += fmt::format("       {}\n", line);
+    if (report.failures() > report.lines().size()) {
+      text += fmt::format("       {} of {} checks failed\n", report.failures(), report.checks());
+    }
+    for (const std::string& note : report.notes()) text += fmt::format("       {}\n", note);
+    const Status written = WriteStandardOutput(text);
+    if (!written) return written.error();
+  }
+  const Status written =
+      WriteStandardOutput(fmt::format("{} of {} cases failed\n", failed, cases.value().size()));
+  if (!written) return written.error();
+  return failed == 0 ? ExitCode::kOk : ExitCode::kDifferent;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,354 @@
+// Whole pictures of scenes at the edges of what can be described.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "simd/target.h"
+#include "src/formats/scene_json.h"
+#include "src/render/render.h"
+#include "src/stress/stress.h"
+
+namespace sheaf::stress {
+namespace {
+
+// The film by the scalar baseline; `report` learns where a target has other bits, and of pixels
+// that are not finite.
+Film RenderEverywhere(Report& report, const Scene& scene, RenderOptions options) {
+  options.engine = Engine::kScalar;
+  const Result<Film> expected = Render(scene, scene.cameras.at(0), options);
+  report.Expect(expected.ok(), "the frame does not render");
+  if (!expected) return {};
+  for (const float value : expected.value().rgb) {
+    report.Expect(std::isfinite(value), "a pixel is not finite");
+  }
+  options.engine = Engine::kSimd;
+  for (const std::string& target : simd::UsableTargets()) {
+    simd::ForceTarget(target);
+    const Result<Film> film = Render(scene, scene.cameras.at(0), options);
+    bool same = film.ok() && film.value().rgb.size() == expected.value().rgb.size();
+    for (std::size_t i = 0; same && i < film.value().rgb.size(); ++i) {
+      same = std::bit_cast<std::uint32_t>(film.value().rgb[i]) ==
+             std::bit_cast<std::uint32_t>(expected.value().rgb[i]);
+    }
+    report.Expect(same, target + " has other bits than src/scalar");
+  }
+  simd::ForceTarget("auto");
+  return expected.value();
+}
+
+RenderOptions Small(const Scene& scene) {
+  RenderOptions options;
+  options.width = 40;
+  options.height = 30;
+  options.max_depth = scene.settings.max_depth;
+  return options;
+}
+
+Film RenderSmall(Report& report, const Scene& scene) {
+  return RenderEverywhere(report, scene, Small(scene));
+}
+
+// A camera at the origin that looks along -z, before a grey background.
+Scene NewScene() {
+  Scene scene;
+  scene.settings.background = Colour(0.5);
+  scene.cameras = {{"eye", {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, Perspective{60}}};
+  return scene;
+}
+
+Material Matt() {
+  Material material;
+  material.name = "matt";
+  material.kd = 0.8;
+  material.ks = 0.4;
+  material.shininess = 20;
+  return material;
+}
+
+Material Glass(double ior) {
+  Material material;
+  material.name = "glass";
+  material.transmit = Colour(1.0);
+  material.ior = ior;
+  return material;
+}
+
+Light LampAt(const Vec3d& position) {
+  Light light;
+  light.name = "lamp";
+  light.source = PointLight{position, {1, 0, 0}};
+  return light;
+}
+
+void ExpectUniform(Report& report, const Film& film, double low, double high) {
+  for (const float value : film.rgb) {
+    const double v = static_cast<double>(value);
+    report.Expect(v >= low && v <= high, fmt::format("a pixel is {}, not {} to {}", v, low, high));
+  }
+}
+
+// Light is neither made nor lost in clear glass, however surfaces nest: all of it is background.
+void NestedGlass(Report& report) {
+  Scene scene = NewScene();
+  scene.settings.max_depth = 40;
+  scene.materials = {Glass(1.5), Glass(1.33)};
+  scene.objects = {{"around the eye", Sphere{{0, 0, 0}, 1}, 0},
+                   {"bubble in it", Sphere{{0, 0, -0.5}, 0.25}, 1},
+                   {"touching from outside", Sphere{{0, 0, -2}, 1}, 0},
+                   {"concentric", Sphere{{0, 0, -2}, 0.5}, 1}};
+  RenderOptions options = Small(scene);
+  options.width = 12;
+  options.height = 9;
+  options.max_depth = 14;
+  ExpectUniform(report, RenderEverywhere(report, scene, options), 0.2, 0.5 + 1e-5);
+}
+
+void ClearGlass(Report& report) {
+  Scene scene = NewScene();
+  scene.materials = {Glass(1)};
+  scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0}};
+  ExpectUniform(report, RenderSmall(report, scene), 0.5, 0.5);
+}
+
+// Between two mirrors, a ray to the limit: the number of rays stays that of the pixels.
+void HallOfMirrors(Report& report) {
+  Scene scene = NewScene();
+  Material mirror;
+  mirror.reflect = Colour(1.0);
+  scene.materials = {mirror};
+  for (const double z : {-5.0, 5.0}) {
+    scene.objects.push_back(
+        {"", Quad{{Vec3d(-1e6, -1e6, z), {1e6, -1e6, z}, {1e6, 1e6, z}, {-1e6, 1e6, z}}}, 0});
+  }
+  RenderOptions options = Small(scene);
+  options.width = options.height = 4;
+  options.max_depth = report.is_thorough() ? 10000 : 1000;
+  RenderEverywhere(report, scene, options);
+  RenderStats stats;
+  const Result<Film> film = Render(scene, scene.cameras[0], options, &stats);
+  const std::uint64_t most = 16u * static_cast<std::uint64_t>(options.max_depth + 1);
+  report.Expect(film.ok() && stats.rays.reflected <= most, "a mirror spawns more than one ray");
+}
+
+// Inside a sphere that glows with 1 and reflects a half: 1 + 1/2 + 1/4 + ... to the depth limit.
+void MirrorSeries(Report& report) {
+  Scene scene = NewScene();
+  scene.settings.ambient = Colour(1.0);
+  scene.settings.max_depth = 12;
+  Material mirror;
+  mirror.ambient = 1;
+  mirror.reflect = Colour(0.5);
+  scene.materials = {mirror};
+  scene.objects = {{"", Sphere{{0.1, 0.2, 0.3}, 3}, 0}};
+  const double sum = 2 - std::ldexp(1, -12);
+  ExpectUniform(report, RenderSmall(report, scene), sum, sum);
+}
+
+void LightsInTheWay(Report& report) {
+  Scene scene = NewScene();
+  scene.materials = {Matt()};
+  scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0},
+                   {"", Quad{{Vec3d(-4, -1, 0), {4, -1, 0}, {4, -1, -8}, {-4, -1, -8}}}, 0}};
+  for (const Vec3d& place : {Vec3d(0, 0, -3), Vec3d(0, 0, -4), Vec3d(1, -1, -3), Vec3d(0, 0, 0),
+                             Vec3d(0, 1, -4), Vec3d(2, -1 - 1e-9, -4)}) {
+    scene.lights = {LampAt(place)};
+    std::get<PointLight>(scene.lights[0].source).falloff = {0, 0, 1};
+    RenderSmall(report, scene);
+  }
+  // A light within the ball lights nothing outside it.
+  scene.lights = {LampAt({0, 0, -4})};
+  ExpectUniform(report, RenderSmall(report, scene), 0, 0.5);
+}
+
+// What the reader must refuse, in one line that names the place.
+void BadMaterials(Report& report) {
+  for (const char* value : {"-1", "1e999", "NaN", "\"red\"", "[1, 2]", "-1e30"}) {
+    for (const char* key : {"kd", "ks", "shininess", "ior", "transmit", "reflect", "ambient"}) {
+      const std::string text = fmt::format(
+          R"({{"materials": [{{"name": "m", "{}": {}}}], "objects": [], "lights": [],
+               "cameras": [{{"name": "c", "eye": [0,0,0], "look_at": [0,0,-1], "fov_y": 60}}]}})",
+          key, value);
+      const Result<Scene> scene = ParseSceneJson(text, "stress");
+      report.Expect(!scene, fmt::format("{}: {} is accepted", key, value));
+      if (scene) continue;
+      const std::string& message = scene.error().message;
+      report.Expect(message.find('\n') == std::string::npos && message.find("stress:") == 0,
+                    "not one line with its place: " + message);
+    }
+  }
+}
+
+void Shininess(Report& report) {
+  for (const double shininess : {0.0, 1.0, 1e6}) {
+    Scene scene = NewScene();
+    scene.materials = {Matt()};
+    scene.materials[0].shininess = shininess;
+    scene.objects = {{"", Sphere{{0, 0, -4}, 2}, 0}};
+    scene.lights = {LampAt({0, 0, 0}), LampAt({3, 3, 0})};
+    RenderSmall(report, scene);
+  }
+}
+
+// A picture of any size has the pixels of a crop, bit for bit.
+void OddSizes(Report& report) {
+  const Result<Scene> scene = ParseSceneJson(
+      R"({"materials": [{"name": "m", "kd": 0.7, "ks": 0.3, "shininess": 9},
+                        {"name": "g", "transmit": 1, "ior": 1.5}],
+          "objects": [{"sphere": {"center": [0, 0, -4], "radius": 1}, "material": "g"},
+                      {"sphere": {"center": [1, 0, -6], "radius": 1}, "material": "m"}],
+          "lights": [{"name": "l", "point": {"position": [5, 9, 2], "falloff": "constant"},
+                      "intensity": 1}],
+          "cameras": [{"name": "c", "eye": [0,0,0], "look_at": [0,0,-1], "fov_y": 40}]})",
+      "stress");
+  report.Expect(scene.ok(), scene ? "" : scene.error().message);
+  if (!scene) return;
+  for (const auto& [width, height] : {std::pair(1, 1), {1, 61}, {61, 1}, {31, 37}, {67, 5}}) {
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    const Film whole = RenderEverywhere(report, scene.value(), options);
+    for (int y = 0; y < height; y += 7) {
+      options.crop = PixelRect{width / 2, y, width / 2 + 1, y + 1};
+      const Result<Film> pixel = Render(scene.value(), scene.value().cameras[0], options);
+      const float *a = pixel.value().pixel(0, 0), *b = whole.pixel(width / 2, y);
+      report.Expect(a[0] == b[0] && a[1] == b[1] && a[2] == b[2],
+                    fmt::format("{}x{}: the crop at row {} differs", width, height, y));
+    }
+  }
+}
+
+void Nothing(Report& report) {
+  Scene scene = NewScene();
+  ExpectUniform(report, RenderSmall(report, scene), 0.5, 0.5);
+  scene.materials = {Matt()};
+  scene.materials[0].ambient = 0.25;
+  scene.objects = {{"", Sphere{{0, 0, 0}, 3}, 0}};
+  ExpectUniform(report, RenderSmall(report, scene), 0.125, 0.125);
+  RenderOptions empty;
+  empty.width = 0;
+  const Result<Film> film = Render(scene, scene.cameras[0], empty);
+  report.Expect(!film && film.error().kind == ErrorKind::kUsage, "a width of 0 is accepted");
+}
+
+void MirroredWinding(Report& report) {
+  // Either winding faces the eye that sees it.
+  Film films[2];
+  for (const int turned : {0, 1}) {
+    Scene scene = NewScene();
+    scene.materials = {Matt()};
+    const Vec3d a(-2, -2, -4), b(2, -2, -4), c(0, 2, -4);
+    scene.objects = {{"", Triangle{{a, turned ? c : b, turned ? b : c}, {}}, 0},
+                     {"", Triangle{{a, a, b}, {}}, 0}};
+    scene.lights = {LampAt({0, 0, 0})};
+    films[turned] = RenderSmall(report, scene);
+  }
+  double most = 0;
+  for (std::size_t i = 0; i < films[0].rgb.size() && i < films[1].rgb.size(); ++i) {
+    most = std::max(most, std::abs(static_cast<double>(films[0].rgb[i] - films[1].rgb[i])));
+  }
+  report.Expect(most < 1e-6, fmt::format("the winding changes a pixel by {}", most));
+}
+
+void FieldsOfView(Report& report) {
+  for (const double fov : {1e-3, 60.0, 179.9}) {
+    Scene scene = NewScene();
+    scene.cameras[0].projection = Perspective{fov};
+    scene.materials = {Matt(), Glass(1.5)};
+    scene.objects = {
+        {"", Sphere{{0, 0, -4}, 1}, 0},
+        {"", Sphere{{0, 0, 4}, 1}, 1},
+        {"", Quad{{Vec3d(-1e5, -1e5, -9), {1e5, -1e5, -9}, {1e5, 1e5, -9}, {-1e5, 1e5, -9}}}, 0}};
+    scene.lights = {LampAt({1, 1, 0})};
+    const Film film = RenderSmall(report, scene);
+    if (film.rgb.empty()) continue;
+    const float middle = film.pixel(20, 15)[0];
+    report.Expect(middle != 0.5f, fmt::format("nothing ahead at {} degrees", fov));
+  }
+}
+
+void OverbrightSurfaces(Report& report) {
+  Scene scene = NewScene();
+  scene.materials = {Matt()};
+  scene.materials[0].kd = scene.materials[0].ks = 1;
+  scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0}};
+  scene.lights = {LampAt({0, 0, 0})};
+  const Film film = RenderSmall(report, scene);
+  float most = 0;
+  for (const float value : film.rgb) most = std::max(most, value);
+  report.Expect(most > 1, "kd + ks > 1 is clamped before the picture is written");
+}
+
+// Many faint lights add up to a bright one.
+void ManyLights(Report& report) {
+  const int count = report.is_thorough() ? 1000000 : 10000;
+  Scene scene = NewScene();
+  scene.materials = {Matt()};
+  scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0}};
+  scene.lights = {LampAt({2, 2, 0})};
+  RenderOptions options = Small(scene);
+  options.width = 4;
+  options.height = 3;
+  const Film one = RenderEverywhere(report, scene, options);
+  scene.lights.assign(static_cast<std::size_t>(count), scene.lights[0]);
+  for (Light& light : scene.lights) light.intensity = 1.0 / count;
+  const Film many = RenderEverywhere(report, scene, options);
+  for (std::size_t i = 0; i < one.rgb.size(); ++i) {
+    // A float sum of n terms may err by n roundoffs.
+    const double slack = 1e-6 + 6e-8 * count * static_cast<double>(one.rgb[i]);
+    report.Expect(
+        std::abs(static_cast<double>(many.rgb[i] - one.rgb[i])) <= slack,
+        fmt::format("{} faint lights give {} and one {}", count, many.rgb[i], one.rgb[i]));
+  }
+}
+
+// Coarse or not, the same scene at another scale and place has no acne: a lit floor stays lit.
+void ScaledPictures(Report& report) {
+  for (int power = -6; power <= 6; power += 2) {
+    for (const double place : {0.0, 1e3}) {
+      const double s = std::pow(10.0, power);
+      const Vec3d at = Vec3d(1, -1, 1) * (place * s);
+      Scene scene = NewScene();
+      scene.cameras[0].eye = at + Vec3d(0, 2, 4) * s;
+      scene.cameras[0].look_at = at;
+      Material white;
+      white.kd = 1;
+      scene.materials = {white};
+      scene.objects = {{"",
+                        Quad{{at + Vec3d(-50, 0, 50) * s, at + Vec3d(50, 0, 50) * s,
+                              at + Vec3d(50, 0, -50) * s, at + Vec3d(-50, 0, -50) * s}},
+                        0}};
+      scene.lights = {{"", DirectionalLight{{0, -1, 0}}, Colour(1.0), 1, true}};
+      RenderOptions options = Small(scene);
+      options.crop = PixelRect{0, 20, 40, 30};
+      for (const float value : RenderEverywhere(report, scene, options).rgb) {
+        report.Expect(value > 0.999f && value < 1.001f,
+                      fmt::format("scale 1e{} at {}: a lit pixel is {}", power, place, value));
+      }
+    }
+  }
+}
+
+constexpr Case kCases[] = {
+    {"clear-glass", "ior 1: undeviated, no reflection", ClearGlass},
+    {"nested-glass", "nested and touching, the eye inside: no light is made", NestedGlass},
+    {"hall-of-mirrors", "reflectance 1, deep: one ray a pixel and depth", HallOfMirrors},
+    {"mirror-series", "reflectance 1/2 all around: the sum of the geometric series", MirrorSeries},
+    {"lights-in-the-way", "a light at, on and in a surface: finite, the same bits", LightsInTheWay},
+    {"bad-materials", "NaN, negative, overflowing, no number: an error of one line", BadMaterials},
+    {"shininess", "0, 1 and 1e6: no NaN", Shininess},
+    {"mirrored-winding", "either winding: the normal faces the eye", MirroredWinding},
+    {"odd-sizes", "1x1, 1xN, primes: the same bits as the crop", OddSizes},
+    {"nothing", "no objects, no lights, no pixels: background, ambient, an error", Nothing},
+    {"fields-of-view", "1e-3 and 179.9 degrees: finite, the same bits", FieldsOfView},
+    {"overbright-surfaces", "kd + ks > 1: more than white, as it is", OverbrightSurfaces},
+    {"many-lights", "10,000 faint lights are one bright one", ManyLights},
+    {"scaled-pictures", "1e-6 to 1e6 in size, moved by 1e3 of it: no acne", ScaledPictures},
+};
+
+}  // namespace
+
+std::span<const Case> PictureCases() { return kCases; }
+
+}  // namespace sheaf::stress
