@@ -381,13 +381,22 @@ void GroundSphere(Report& report) {
 }
 
 void OnSphere(Report& report) {
-  Ray out{{0, 0, 1}, {0, 0, 1}}, in{{0, 0, 1}, {0, 0, -1}};
+  const Ray out{{0, 0, 1}, {0, 0, 1}}, in{{0, 0, 1}, {0, 0, -1}};
   ExpectAllMiss(report, UnitSphere(), {out});
   ExpectHit(report, UnitSphere(), in, 0, 2, 0);
-  out.source = 0;
-  in.source = kInsideBit;
-  ExpectAllMiss(report, UnitSphere(), {out});
-  ExpectHit(report, UnitSphere(), in, 0, 2, 0);
+  // Points that rounding put off the sphere, to either side: the source decides.
+  Random random(13);
+  std::vector<Ray> outward, inward;
+  for (int i = 0; i < 500; ++i) {
+    const Vec at = random.Direction();
+    outward.push_back({at, at, 0});
+    inward.push_back({at, -at, kInsideBit});
+  }
+  ExpectAllMiss(report, UnitSphere(), outward);
+  const std::vector<Hit> hits = TraceEverywhere(report, UnitSphere(), inward);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    report.Expect(IsHit(hits[i]) && hits[i].u == 1, "not the far root", &inward[i]);
+  }
 }
 
 void FromCentre(Report& report) {
@@ -565,20 +574,25 @@ void CoplanarDuplicates(Report& report) {
 }
 
 void InPlane(Report& report) {
-  Random random(20);
-  Shapes shapes;
-  for (int i = 0; i < 30; ++i) {
-    const Vec at = random.InBox(4);
-    shapes.AddTriangle(at, at + random.InBox(1), at + random.InBox(1));
-  }
-  std::vector<Ray> rays;
-  for (std::uint32_t i = 0; i < 30; ++i) {
-    const Vec a = shapes.vertex(3 * i), b = shapes.vertex(3 * i + 1), c = shapes.vertex(3 * i + 2);
-    rays.push_back({a + (a - b) * 2.0f, b - a});
-    rays.push_back({b + (b - c) + (b - a), (c - b) + (a - b) * 0.5f});
-  }
-  for (const Hit& hit : TraceEverywhere(report, shapes, rays)) {
-    report.Expect(hit.t == hit.t && hit.u == hit.u && hit.v == hit.v, "NaN in a hit");
+  for (std::uint32_t seed = 0; seed < (report.is_thorough() ? 5000u : 50u); ++seed) {
+    Random random(seed);
+    Shapes shapes;
+    for (int i = 0; i < 30; ++i) {
+      const Vec at = random.InBox(4);
+      shapes.AddTriangle(at, at + random.InBox(1), at + random.InBox(1));
+    }
+    std::vector<Ray> rays;
+    for (std::uint32_t i = 0; i < 90; i += 3) {
+      const Vec a = shapes.vertex(i), b = shapes.vertex(i + 1), c = shapes.vertex(i + 2);
+      // Along an edge, past the triangle, and across it, all within its plane but for rounding.
+      rays.push_back({a + (a - b) * 2.0f, b - a});
+      rays.push_back({b + (b - c) + (b - a), (c - b) + (a - b) * random.In(-2, 2)});
+      rays.push_back({a + (b - a) * random.In(-9, 9) + (c - a) * random.In(-9, 9),
+                      (b - a) * random.In(-1, 1) + (c - a) * random.In(-1, 1)});
+    }
+    for (const Hit& hit : TraceEverywhere(report, shapes, rays)) {
+      report.Expect(hit.t == hit.t && hit.u == hit.u && hit.v == hit.v, "NaN in a hit");
+    }
   }
 }
 
