@@ -1,6 +1,5 @@
 #include "bench/interleave.h"
 
-#include <algorithm>
 #include <chrono>
 
 namespace sheaf::bench {
@@ -23,12 +22,6 @@ std::vector<std::vector<double>> Interleave(const std::vector<Contestant>& conte
     }
   }
   return seconds;
-}
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 double MedianRatio(const std::vector<double>& a, const std::vector<double>& b) {

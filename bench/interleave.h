@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "src/core/rank_statistics.h"
+
 namespace sheaf::bench {
 
 struct Contestant {
@@ -20,9 +22,6 @@ double SecondsOf(const std::function<void()>& f);
 // contestant.
 std::vector<std::vector<double>> Interleave(const std::vector<Contestant>& contestants,
                                             int repetitions);
-
-// `values` is not empty.
-double Median(std::vector<double> values);
 
 // The median over repetitions of a[i] / b[i]: what drifts within a run cancels in each quotient.
 double MedianRatio(const std::vector<double>& a, const std::vector<double>& b);

@@ -48,8 +48,10 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Tile<Real> tile;
   StrayRays strays;
-  const bool may_be_tile = tree.node_count > 0 && (coherence == Coherence::kUnknown ||
-                                                   coherence == Coherence::kCommonOrigin);
+  // On one lane a tile is one ray, which gains nothing where boxes do not pay.
+  const bool may_be_tile =
+      tree.node_count > 0 && !(tree.skips_boxes && lanes == 1) &&
+      (coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin);
   const bool may_be_sheet = coherence == Coherence::kUnknown;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
     tile.count = 0;

@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/has_program.h"
 #include "src/core/version.h"
 #include "src/formats/pfm.h"
 #include "src/formats/png.h"
@@ -292,7 +293,7 @@ TEST_CASE("pareto charts time against error") {
   CHECK(converged == 0);  // the reference's own samples
   const std::string csv = ReadText(work / "report/front.csv");
   CHECK(LineCount(csv) == report["points"].size() + 1);
-  if (std::system("command -v gnuplot >/dev/null 2>&1") == 0) {
+  if (HasProgram("gnuplot")) {
     CHECK(fs::exists(work / "report/front.svg"));
     CHECK(fs::exists(work / "report/front.png"));
   }

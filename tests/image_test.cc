@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "random_scene.h"
+#include "src/core/has_program.h"
 #include "src/formats/picture.h"
 #include "src/formats/png.h"
 #include "src/formats/scene_json.h"
@@ -99,7 +100,7 @@ TEST_CASE("every view is close to the stored double-precision pictures") {
 }
 
 TEST_CASE("every view is close to POV-Ray's") {
-  if (std::system("command -v povray >/dev/null 2>&1") != 0) {
+  if (!HasProgram("povray")) {
     MESSAGE("skipped: povray is not installed");
     return;
   }

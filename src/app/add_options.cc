@@ -2,9 +2,6 @@
 
 #include <climits>
 
-#include "src/app/parse_options.h"
-#include "src/render/render.h"
-
 namespace sheaf {
 
 void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
@@ -19,6 +16,18 @@ void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
               const char* placeholder, const char* description) {
   AddParsed(app, name, value, placeholder, "a number 0 to 1", description,
             [](const std::string& text) { return ParseNumber(text, 0, 1); });
+}
+
+void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
+  AddParsed(app, "--size", size, "WxH",
+            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
+            "Pixels of the whole picture", &ParseSize);
+}
+
+void AddPrecision(CLI::App& app, std::string& name) {
+  app.add_option("--precision", name, "Arithmetic")
+      ->option_text("strict|double")
+      ->check(CLI::IsMember({"strict", "double"}));
 }
 
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description) {

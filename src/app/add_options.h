@@ -41,6 +41,12 @@ void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int 
 void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
               const char* placeholder, const char* description);
 
+// --size, of the whole picture.
+void AddSize(CLI::App& app, std::optional<PixelSize>& size);
+
+// --precision, a name that PrecisionOf takes.
+void AddPrecision(CLI::App& app, std::string& name);
+
 // --targets, a list that ExpandTargets takes.
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description);
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -12,12 +12,12 @@
 #include "simd/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
+#include "src/app/json_text.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/core/atomic_file.h"
 #include "src/core/rank_statistics.h"
 #include "src/core/version.h"
-#include "src/formats/printable.h"
 #include "src/formats/scene_json.h"
 #include "src/render/render.h"
 
@@ -44,8 +44,7 @@ struct Row {
 
 Status RenderOnce(const Scene& scene, const Camera& camera, RenderOptions options, Row& row,
                   bool is_kept) {
-  if (const Status chosen = ChooseTarget(row.target); !chosen) return chosen;
-  options.engine = row.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  if (const Status chosen = ChooseTarget(row.target, options); !chosen) return chosen;
   options.threads = row.threads;
   if (options.engine == Engine::kSimd) row.lanes = simd::RunningLanes();
   FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
@@ -249,9 +248,7 @@ CLI::App* AddBenchCommand(CLI::App& app, BenchRequest& request) {
   bench->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
   bench->add_option("--camera", request.camera, "The camera; the scene's first if absent")
       ->option_text("NAME");
-  AddParsed(*bench, "--size", request.size, "WxH",
-            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
-            "Pixels of the picture", &ParseSize);
+  AddSize(*bench, request.size);
   AddInteger(*bench, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddTargets(*bench, request.targets, "What renders; all: every usable one and scalar");
   AddThreads(*bench, request.threads);
@@ -288,13 +285,7 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
   const auto cameras = ChooseCameras(choice, request.scene, scene.value());
   if (!cameras) return cameras.error();
   const Camera& camera = *cameras.value().front();
-  const Settings& settings = scene.value().settings;
-  RenderOptions options;
-  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
-  options.width = size.width;
-  options.height = size.height;
-  options.samples = request.samples.value_or(settings.samples);
-  options.max_depth = settings.max_depth;
+  RenderOptions options = FrameOptions(scene.value().settings, request.size, request.samples);
   options.timing = Timing::kOn;
 
   Json report = {{"sheaf", kVersion},      {"scene", request.scene},   {"camera", camera.name},
@@ -319,7 +310,7 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
       if (verdict.is_slower) code = ExitCode::kDifferent;
     }
   }
-  const std::string json = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string json = JsonText(report);
   if (has_file) {
     if (const Status written = WriteFileWhole(request.json, json); !written) return written.error();
   }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "simd/target.h"
-#include "src/app/parse_options.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
@@ -59,6 +58,25 @@ Status ChooseTarget(const std::string& target) {
                              fmt::join(choices, ", ")));
   }
   return UnknownName("--target", "target", target, "usable", choices);
+}
+
+Status ChooseTarget(const std::string& target, RenderOptions& options) {
+  options.engine = target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  return ChooseTarget(target);
+}
+
+Precision PrecisionOf(const std::string& name) {
+  return name == "double" ? Precision::kDouble : Precision::kStrict;
+}
+
+RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
+                           const std::optional<int>& samples) {
+  RenderOptions options;
+  options.width = size ? size->width : settings.width;
+  options.height = size ? size->height : settings.height;
+  options.samples = samples.value_or(settings.samples);
+  options.max_depth = settings.max_depth;
+  return options;
 }
 
 std::vector<std::string> ExpandTargets(const std::vector<std::string>& names) {

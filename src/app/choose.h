@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "src/app/parse_options.h"
 #include "src/core/error.h"
+#include "src/render/render.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -19,6 +21,16 @@ std::optional<std::vector<std::string>> ParseNames(const std::string& text);
 
 // Makes SIMD kernels run `target`; "scalar", which runs none, is fine too.
 Status ChooseTarget(const std::string& target);
+
+// The same for one frame, whose engine it sets.
+Status ChooseTarget(const std::string& target, RenderOptions& options);
+
+// "strict" or "double".
+Precision PrecisionOf(const std::string& name);
+
+// A scene's settings, and what the command line says instead.
+RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
+                           const std::optional<int>& samples);
 
 // Names of targets, where "all" stands for scalar and every usable one, "auto" for the best.
 std::vector<std::string> ExpandTargets(const std::vector<std::string>& names);

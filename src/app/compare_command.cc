@@ -10,6 +10,7 @@
 
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
+#include "src/app/json_text.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/formats/picture.h"
@@ -38,8 +39,8 @@ struct Renderer {
 
 Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Camera& camera,
                         RenderOptions options) {
-  if (const Status chosen = ChooseTarget(renderer.target); !chosen) return chosen.error();
-  options.engine = renderer.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  const Status chosen = ChooseTarget(renderer.target, options);
+  if (!chosen) return chosen.error();
   options.threads = renderer.threads;
   FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
   RenderStats stats;
@@ -113,14 +114,8 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
   const auto cameras = ChooseCameras(request.choice, path, scene);
   if (!cameras) return cameras.error();
 
-  RenderOptions options;
-  const Settings& settings = scene.settings;
-  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
-  options.width = size.width;
-  options.height = size.height;
-  options.samples = request.samples.value_or(settings.samples);
-  options.max_depth = settings.max_depth;
-  options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
+  RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);
+  options.precision = PrecisionOf(request.precision);
 
   CatchInterrupts();
   Json json = {{"scene", path}, {"reference", renderers.front().Name()}, {"runs", Json::array()}};
@@ -147,10 +142,10 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
       if (!written) return written.error();
     }
   }
-  const Status written = WriteStandardOutput(
-      request.json ? json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
-                   : fmt::format("{} of {} renderings differ from {}\n", differing, runs,
-                                 renderers.front().Name()));
+  const Status written =
+      WriteStandardOutput(request.json ? JsonText(json)
+                                       : fmt::format("{} of {} renderings differ from {}\n",
+                                                     differing, runs, renderers.front().Name()));
   if (!written) return written.error();
   return differing == 0 ? ExitCode::kOk : ExitCode::kDifferent;
 }
@@ -252,8 +247,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
         path, metrics.rmse, metrics.psnr, metrics.largest, metrics.over, metrics.mean_flip,
         broken.empty() ? "" : "; ", broken);
   }
-  const Status written = WriteStandardOutput(
-      request.json ? json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text);
+  const Status written = WriteStandardOutput(request.json ? JsonText(json) : text);
   if (!written) return written.error();
   return code;
 }
@@ -267,18 +261,14 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
       ->required()
       ->option_text("...");
   AddCameraChoice(*compare, request.choice);
-  AddParsed(*compare, "--size", request.size, "WxH",
-            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
-            "Pixels of the picture", &ParseSize);
+  AddSize(*compare, request.size);
   AddInteger(*compare, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddTargets(*compare, request.targets,
              "What renders; the first is the reference. all: scalar and every usable one");
   AddThreads(*compare, request.threads);
   AddInteger(*compare, "--max-ulp", request.max_ulp, 0, std::numeric_limits<int>::max(),
              "Units in the last place that a channel may differ by; 0 if absent");
-  compare->add_option("--precision", request.precision, "Arithmetic")
-      ->option_text("strict|double")
-      ->check(CLI::IsMember({"strict", "double"}));
+  AddPrecision(*compare, request.precision);
   compare->add_option("--transfer", request.transfer, "How 8-bit pictures encode light")
       ->option_text("linear|srgb")
       ->check(CLI::IsMember({"linear", "srgb"}));

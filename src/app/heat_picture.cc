@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 #include <vector>
 
@@ -32,13 +31,6 @@ float UsualMost(const std::vector<TileCost>& tiles, std::size_t channel) {
   return *at > 0 ? *at : 1;
 }
 
-std::string EndingOf(const std::string& path) {
-  std::string ending = path.substr(path.rfind('.'));
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 }  // namespace
 
 std::string HeatPath(const std::string& path) {
@@ -53,7 +45,7 @@ Status WriteHeatPicture(const RenderOptions& options, const RenderStats& stats,
     return std::pair(a.tile.y0, a.tile.x0) < std::pair(b.tile.y0, b.tile.x0);
   });
   Heat scale = {1, 1, 1};
-  if (EndingOf(path) != ".pfm") {
+  if (!HoldsFloats(path)) {
     for (const std::size_t i : {0, 2}) scale[i] = 1 / UsualMost(tiles, i);
   }
   const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});

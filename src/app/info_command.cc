@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "simd/target.h"
+#include "src/app/json_text.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/core/version.h"
@@ -191,7 +192,7 @@ Status RunInfo(const InfoRequest& request) {
     json["scene"] = SceneJson(request.scene, scene.value());
   }
   if (request.json) {
-    return WriteStandardOutput(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return WriteStandardOutput(JsonText(json));
   }
   std::string text = MachineText(json);
   if (json.contains("scene")) text += SceneText(json["scene"]);

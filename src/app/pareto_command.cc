@@ -95,9 +95,9 @@ struct Timed {
 
 Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting,
                           int repetitions) {
-  if (const Status chosen = ChooseTarget(setting.target); !chosen) return chosen.error();
   RenderOptions options = setting.options;
-  options.engine = setting.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  const Status chosen = ChooseTarget(setting.target, options);
+  if (!chosen) return chosen.error();
   std::vector<double> seconds;
   Timed timed;
   for (int i = 0; i < repetitions; ++i) {
@@ -225,9 +225,7 @@ CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
   pareto->add_option("-o,--output", request.output, "The folder for the report (needed)")
       ->required()
       ->option_text("FOLDER");
-  AddParsed(*pareto, "--size", request.size, "WxH",
-            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
-            "Pixels of the picture", &ParseSize);
+  AddSize(*pareto, request.size);
   AddInteger(*pareto, "--reference-spp", request.reference_samples, 1, kMaxSamples,
              "Samples a pixel of the converged picture, in double; 256 if absent");
   AddInteger(*pareto, "--repetitions", request.repetitions, 1, 1000,
@@ -253,12 +251,7 @@ Status RunPareto(const ParetoRequest& request) {
   const Status writable = CheckWritable(request.output + "/report.json");
   if (!writable) return writable;
 
-  const Settings& settings = scene.value().settings;
-  RenderOptions base;
-  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
-  base.width = size.width;
-  base.height = size.height;
-  base.max_depth = settings.max_depth;
+  RenderOptions base = FrameOptions(scene.value().settings, request.size, std::nullopt);
   base.threads = request.threads.value_or(1);
   const int repetitions = request.repetitions.value_or(3);
   CatchInterrupts();

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "src/app/json_text.h"
 #include "src/core/atomic_file.h"
+#include "src/core/has_program.h"
 #include "src/core/version.h"
 
 namespace sheaf {
@@ -28,7 +29,7 @@ std::string CsvText(const std::vector<ParetoPoint>& points) {
   return text;
 }
 
-std::string JsonText(const ParetoTitle& title, const std::vector<ParetoPoint>& points) {
+std::string ReportJson(const ParetoTitle& title, const std::vector<ParetoPoint>& points) {
   Json json = {{"sheaf", kVersion},        {"scene", title.scene},
                {"camera", title.camera},   {"width", title.width},
                {"height", title.height},   {"reference_samples", title.reference_samples},
@@ -43,7 +44,7 @@ std::string JsonText(const ParetoTitle& title, const std::vector<ParetoPoint>& p
                               {"sampling", point.sampling},
                               {"front", point.is_on_front}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 // Gnuplot takes a text in double quotes with C's escapes.
@@ -156,9 +157,9 @@ Result<std::vector<std::string>> WriteParetoReport(const ParetoTitle& title,
   std::vector<std::string> paths = {stem + ".csv", stem + ".json"};
   const Status table = WriteFileWhole(paths[0], CsvText(points));
   if (!table) return table.error();
-  const Status json = WriteFileWhole(paths[1], JsonText(title, points));
+  const Status json = WriteFileWhole(paths[1], ReportJson(title, points));
   if (!json) return json.error();
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return paths;
+  if (!HasProgram("gnuplot")) return paths;
   if (!DrawChart(GnuplotText(title, points, stem), stem)) {
     return Error{ErrorKind::kInputOutput, fmt::format("{}.svg: gnuplot could not draw it", stem)};
   }

@@ -97,25 +97,21 @@ Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene&
 }
 
 Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings& settings) {
-  RenderOptions options;
-  const PixelSize size = request.size.value_or(PixelSize{settings.width, settings.height});
-  options.width = size.width;
-  options.height = size.height;
-  options.samples = request.samples.value_or(settings.samples);
+  RenderOptions options = FrameOptions(settings, request.size, request.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
   options.contrast = request.contrast;
   options.min_weight = request.min_weight.value_or(0);
   options.crop = request.crop;
   options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
-  options.precision = request.precision == "double" ? Precision::kDouble : Precision::kStrict;
+  options.precision = PrecisionOf(request.precision);
   options.threads = request.threads.value_or(options.threads);
   options.tile_size = request.tile_size.value_or(options.tile_size);
   options.tile_costs = request.layers.empty() ? TileCosts::kOff : TileCosts::kOn;
   options.timing = request.statistics.empty() ? Timing::kOff : Timing::kOn;
-  if (options.crop && (options.crop->x1 > size.width || options.crop->y1 > size.height)) {
+  if (options.crop && (options.crop->x1 > options.width || options.crop->y1 > options.height)) {
     return Usage(fmt::format("--crop: {},{},{},{} is not inside the picture of {}x{}",
                              options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1,
-                             size.width, size.height));
+                             options.width, options.height));
   }
   return options;
 }
@@ -178,9 +174,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
                    "The picture, .png or .pfm (needed); {camera} becomes the camera's name")
       ->required()
       ->option_text("PATH");
-  AddParsed(*render, "--size", request.size, "WxH",
-            fmt::format("a size like 640x480, sides of 1 to {}", kMaxImageSide),
-            "Pixels of the whole picture", &ParseSize);
+  AddSize(*render, request.size);
   AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddInteger(*render, "--max-depth", request.max_depth, 0, kMaxDepth,
              "A ray deeper than this is black; primary rays have depth 0");
@@ -193,9 +187,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
             "Render this part alone; x1 and y1 are exclusive", &ParseRect);
   render->add_option("--target", request.target, "SIMD target; sheaf info lists the usable ones")
       ->option_text("auto|scalar|NAME");
-  render->add_option("--precision", request.precision, "Arithmetic")
-      ->option_text("strict|double")
-      ->check(CLI::IsMember({"strict", "double"}));
+  AddPrecision(*render, request.precision);
   AddParsed(*render, "--aov", request.layers, "heat", "a layer; there is heat",
             "Beside the picture PATH one of costs: time, live lanes and rays of each tile",
             [](const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "src/app/json_text.h"
 #include "src/core/version.h"
 
 namespace sheaf {
@@ -76,7 +77,7 @@ Json FrameJson(const FrameRecord& frame) {
 std::string StatisticsJson(const std::string& scene_path, const std::vector<FrameRecord>& frames) {
   Json json = {{"sheaf", kVersion}, {"scene", scene_path}, {"frames", Json::array()}};
   for (const FrameRecord& frame : frames) json["frames"].push_back(FrameJson(frame));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace sheaf

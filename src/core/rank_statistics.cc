@@ -71,7 +71,7 @@ double ApproximateTail(std::size_t m, std::size_t n, double u, double ties) {
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 Interval MedianInterval(std::vector<double> values) {

@@ -55,6 +55,8 @@ Status CheckPicturePath(const std::string& path) {
                fmt::format("{}: unknown picture format; the name must end in .png or .pfm", path)};
 }
 
+bool HoldsFloats(const std::string& path) { return FormatOf(path) == Format::kPfm; }
+
 Result<PictureWriter> PictureWriter::Create(const std::string& path, int width, int height,
                                             Transfer transfer) {
   const Status known = CheckPicturePath(path);

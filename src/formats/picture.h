@@ -24,6 +24,9 @@ std::vector<std::uint8_t> QuantizeTo8Bit(const Film& film, Transfer transfer);
 // Whether WritePicture knows the ending of this path (.png, .pfm, any case); an error lists them.
 Status CheckPicturePath(const std::string& path);
 
+// Whether a picture of this path holds floats as they are (.pfm).
+bool HoldsFloats(const std::string& path);
+
 // Writes a picture whose rows come in turn, by the path's ending: .png (8 bit) or .pfm
 // (little-endian float, linear, untouched bits). No more than a row is kept, but of a .pfm that is
 // a pipe or a device. Without a Finish() the file does not appear, and one that was there stays.

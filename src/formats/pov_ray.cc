@@ -15,6 +15,8 @@
 #include <optional>
 #include <variant>
 
+#include "src/core/has_program.h"
+
 namespace sheaf {
 namespace {
 
@@ -220,7 +222,7 @@ std::string PovText(const Scene& scene, const Camera& camera) {
   return text;
 }
 
-bool HasPovRay() { return std::system("command -v povray >/dev/null 2>&1") == 0; }
+bool HasPovRay() { return HasProgram("povray"); }
 
 Result<PovRender> RenderWithPovRay(const Scene& scene, const Camera& camera, int width, int height,
                                    const std::string& antialiasing, PovPicture picture) {

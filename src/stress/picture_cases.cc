@@ -1,13 +1,13 @@
 // Whole pictures of scenes at the edges of what can be described.
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <string>
 
-#include "simd/target.h"
 #include "src/formats/scene_json.h"
+#include "src/render/picture_metrics.h"
 #include "src/render/render.h"
+#include "src/stress/probe.h"
 #include "src/stress/stress.h"
 
 namespace sheaf::stress {
@@ -24,17 +24,11 @@ Film RenderEverywhere(Report& report, const Scene& scene, RenderOptions options)
     report.Expect(std::isfinite(value), "a pixel is not finite");
   }
   options.engine = Engine::kSimd;
-  for (const std::string& target : simd::UsableTargets()) {
-    simd::ForceTarget(target);
+  ForEachTarget(report, [&](const std::string& target) {
     const Result<Film> film = Render(scene, scene.cameras.at(0), options);
-    bool same = film.ok() && film.value().rgb.size() == expected.value().rgb.size();
-    for (std::size_t i = 0; same && i < film.value().rgb.size(); ++i) {
-      same = std::bit_cast<std::uint32_t>(film.value().rgb[i]) ==
-             std::bit_cast<std::uint32_t>(expected.value().rgb[i]);
-    }
+    const bool same = film && CompareFilms(expected.value(), film.value(), 0).pixels == 0;
     report.Expect(same, target + " has other bits than src/scalar");
-  }
-  simd::ForceTarget("auto");
+  });
   return expected.value();
 }
 

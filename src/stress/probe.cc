@@ -103,8 +103,9 @@ std::string HitText(const Hit& hit) {
 }
 
 // The kernels of the target in force against `expected`.
-void CheckKernels(Report& report, const Geometry& geometry, const std::vector<Ray>& rays,
-                  const FlatRays& flat, const std::vector<Hit>& expected) {
+void CheckKernels(Report& report, const std::string& target, const Geometry& geometry,
+                  const std::vector<Ray>& rays, const FlatRays& flat,
+                  const std::vector<Hit>& expected) {
   const auto count = static_cast<std::uint32_t>(rays.size());
   std::vector<float> t(count), u(count), v(count);
   std::vector<std::uint32_t> primitive(count), occluded(count);
@@ -115,7 +116,6 @@ void CheckKernels(Report& report, const Geometry& geometry, const std::vector<Ra
                {.t = t.data(), .primitive = primitive.data(), .u = u.data(), .v = v.data()},
                options);
   TraceOccluded(geometry, flat.view(), count, occluded.data(), options);
-  const std::string target = simd::RunningTarget();
   for (std::uint32_t i = 0; i < count; ++i) {
     const Hit found{t[i], primitive[i], u[i], v[i]};
     if (!SameHit(found, expected[i])) {
@@ -129,7 +129,6 @@ void CheckKernels(Report& report, const Geometry& geometry, const std::vector<Ra
                     &rays[i]);
     }
   }
-  report.Expect(true, "");
 }
 
 }  // namespace
@@ -169,6 +168,15 @@ Vec Shapes::vertex(std::uint32_t i) const {
 
 bool IsHit(const Hit& hit) { return hit.primitive != kNoPrimitive; }
 
+void ForEachTarget(Report& report, const std::function<void(const std::string& name)>& body) {
+  for (const std::string& target : simd::UsableTargets()) {
+    const bool forced = simd::ForceTarget(target);
+    report.Expect(forced && simd::RunningTarget() == target, target + " does not run");
+    body(target);
+  }
+  simd::ForceTarget("auto");
+}
+
 std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
                                  const std::vector<Ray>& given, Oracle oracle) {
   std::vector<Ray> rays = given;
@@ -191,11 +199,9 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
     report.Expect(SameHit(by_tree, expected.back()),
                   "the baseline's tree differs from every primitive", &ray);
   }
-  for (const std::string& target : simd::UsableTargets()) {
-    simd::ForceTarget(target);
-    CheckKernels(report, geometry.value(), rays, flat_rays, expected);
-  }
-  simd::ForceTarget("auto");
+  ForEachTarget(report, [&](const std::string& target) {
+    CheckKernels(report, target, geometry.value(), rays, flat_rays, expected);
+  });
   if (report.replay()) {
     report.Note(
         fmt::format("{} primitives: {}", shapes.primitive_count(), HitText(expected.back())));

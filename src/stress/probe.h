@@ -3,6 +3,7 @@
 #define SHEAF_STRESS_PROBE_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes, const std
                                  Oracle oracle = Oracle::kEveryPrimitive);
 
 bool IsHit(const Hit& hit);
+
+// Forces each usable target in turn around `body(name)`; `report` learns where another one ran.
+void ForEachTarget(Report& report, const std::function<void(const std::string& name)>& body);
 
 }  // namespace sheaf::stress
 
