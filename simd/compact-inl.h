@@ -14,7 +14,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <class D>
 HWY_INLINE std::uint32_t CountLanes(D d, hn::Mask<D> lanes) {
@@ -70,7 +70,7 @@ HWY_INLINE void CompactStoreIds(D d, hn::Vec<IdLanes<D>> v, Order order, std::ui
   StoreIds(d, hn::BitCast(IdLanes<D>(), Compact(d, hn::BitCast(d, v), order)), to);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_COMPACT_INL_H_

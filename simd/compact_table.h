@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace sheaf::simd {
+namespace sheaf {
 
 // lane[mask][i] is the lane that moves to place i: first the lanes of `mask`, ascending, then the
 // others. With fewer than eight lanes the first entries still name lanes below their number.
@@ -28,6 +28,6 @@ constexpr CompactTable MakeCompactTable() {
 
 inline constexpr CompactTable kCompactTable = MakeCompactTable();
 
-}  // namespace sheaf::simd
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_COMPACT_TABLE_H_

@@ -10,8 +10,9 @@
 #include <type_traits>
 
 #include "hwy/highway.h"
+#include "simd/arithmetic.h"
 
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
 template <typename Real, typename FloatKernel, typename DoubleKernel>
 constexpr auto KernelFor(FloatKernel* for_float, DoubleKernel* for_double) {
@@ -22,9 +23,27 @@ constexpr auto KernelFor(FloatKernel* for_float, DoubleKernel* for_double) {
   }
 }
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
+// NAMEF32 and NAMEF64, HWY_EXPORT of both, and the public function for float and double. Fast
+// arithmetic is for float alone.
+#ifdef SHEAF_FAST
+#define SHEAF_NAME_KERNELS(NAME) constexpr auto& NAME##F32 = NAME##Lanes<float>
+#define SHEAF_EXPORT(NAME) HWY_EXPORT(NAME##F32)
+#define SHEAF_INSTANTIATE(NAME) template decltype(NAME<float>) NAME<float>
+#define SHEAF_DISPATCH(Real, NAME) HWY_DYNAMIC_DISPATCH(NAME##F32)
+#else
+#define SHEAF_NAME_KERNELS(NAME)                  \
+  constexpr auto& NAME##F32 = NAME##Lanes<float>; \
+  constexpr auto& NAME##F64 = NAME##Lanes<double>
+#define SHEAF_EXPORT(NAME) \
+  HWY_EXPORT(NAME##F32);   \
+  HWY_EXPORT(NAME##F64)
+#define SHEAF_INSTANTIATE(NAME)               \
+  template decltype(NAME<float>) NAME<float>; \
+  template decltype(NAME<double>) NAME<double>
 #define SHEAF_DISPATCH(Real, NAME) \
   KernelFor<Real>(HWY_DYNAMIC_DISPATCH(NAME##F32), HWY_DYNAMIC_DISPATCH(NAME##F64))
+#endif
 
 #endif  // SHEAF_SIMD_DISPATCH_H_

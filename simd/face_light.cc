@@ -32,8 +32,7 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
   }
   return facing;
 }
-constexpr auto& FaceLightF32 = FaceLightLanes<float>;
-constexpr auto& FaceLightF64 = FaceLightLanes<double>;
+SHEAF_NAME_KERNELS(FaceLight);
 
 }  // namespace sheaf::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -41,8 +40,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::simd {
 
-HWY_EXPORT(FaceLightF32);
-HWY_EXPORT(FaceLightF64);
+SHEAF_EXPORT(FaceLight);
 
 template <typename Real>
 std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& material,
@@ -50,8 +48,7 @@ std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& 
                         std::uint32_t* faces) {
   return SHEAF_DISPATCH(Real, FaceLight)(light, material, surfaces, count, faces);
 }
-template decltype(FaceLight<float>) FaceLight<float>;
-template decltype(FaceLight<double>) FaceLight<double>;
+SHEAF_INSTANTIATE(FaceLight);
 
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

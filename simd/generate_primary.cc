@@ -46,8 +46,7 @@ void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const R
     hn::StoreU(dz, d, rays.direction_z + i);
   }
 }
-constexpr auto& GeneratePrimaryF32 = GeneratePrimaryLanes<float>;
-constexpr auto& GeneratePrimaryF64 = GeneratePrimaryLanes<double>;
+SHEAF_NAME_KERNELS(GeneratePrimary);
 
 }  // namespace sheaf::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -55,16 +54,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::simd {
 
-HWY_EXPORT(GeneratePrimaryF32);
-HWY_EXPORT(GeneratePrimaryF64);
+SHEAF_EXPORT(GeneratePrimary);
 
 template <typename Real>
 void GeneratePrimary(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx, Real sy,
                      std::uint32_t count, const RayOutput<Real>& rays) {
   SHEAF_DISPATCH(Real, GeneratePrimary)(camera, x, y, sx, sy, count, rays);
 }
-template decltype(GeneratePrimary<float>) GeneratePrimary<float>;
-template decltype(GeneratePrimary<double>) GeneratePrimary<double>;
+SHEAF_INSTANTIATE(GeneratePrimary);
 
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

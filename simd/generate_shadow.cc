@@ -69,8 +69,7 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
   }
   return size;
 }
-constexpr auto& GenerateShadowF32 = GenerateShadowLanes<float>;
-constexpr auto& GenerateShadowF64 = GenerateShadowLanes<double>;
+SHEAF_NAME_KERNELS(GenerateShadow);
 
 }  // namespace sheaf::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -78,8 +77,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::simd {
 
-HWY_EXPORT(GenerateShadowF32);
-HWY_EXPORT(GenerateShadowF64);
+SHEAF_EXPORT(GenerateShadow);
 
 template <typename Real>
 std::uint32_t GenerateShadow(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
@@ -87,8 +85,7 @@ std::uint32_t GenerateShadow(const LightData<Real>& light, const SurfaceView<Rea
                              const RayOutput<Real>& rays, std::uint32_t* surface_of_ray) {
   return SHEAF_DISPATCH(Real, GenerateShadow)(light, surfaces, faces, count, rays, surface_of_ray);
 }
-template decltype(GenerateShadow<float>) GenerateShadow<float>;
-template decltype(GenerateShadow<double>) GenerateShadow<double>;
+SHEAF_INSTANTIATE(GenerateShadow);
 
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

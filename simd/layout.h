@@ -347,6 +347,11 @@ struct CameraData {
   Real half_width, half_height;  // pixels
 };
 
+// How many children surfaces have.
+struct SpawnCounts {
+  std::uint32_t reflected, refracted;
+};
+
 }  // namespace sheaf
 
 #endif  // SHEAF_SIMD_LAYOUT_H_

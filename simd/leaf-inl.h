@@ -16,7 +16,7 @@
 #include "simd/triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // As many lanes as a leaf has primitives, or a node children.
 template <typename Real>
@@ -72,7 +72,7 @@ HWY_INLINE void TriangleAgainstPacket(D d, Packet<Real>& packet, int axis, V ax,
       hn::And(hn::Le(hn::Load(d, packet.t_min), t), hn::Le(t, hn::Load(d, packet.t_best)));
   const M hit = hn::And(hn::And(inside, elsewhere), within);
   if (hn::AllFalse(d, hit)) return;
-  KeepHits<kQuery>(d, packet, hit, t, hn::Div(v, det), hn::Div(w, det), ids);
+  KeepHits<kQuery>(d, packet, hit, t, Divide(d, v, det), Divide(d, w, det), ids);
 }
 
 // Sphere `i` of a block of `n` against the rays of `lanes`.
@@ -240,7 +240,7 @@ HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, P
   }
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_LEAF_INL_H_

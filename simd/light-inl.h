@@ -9,7 +9,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // The unit vector to the light, its cosine with the normal (NaN where the light lies on the point)
 // and the denominator of its falloff: IncidenceOf in src/scalar/shade.h.
@@ -26,9 +26,7 @@ HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceVi
     lz = hn::Sub(lz, hn::LoadU(d, surfaces.position_z + i));
     squared = Dot(d, lx, ly, lz, lx, ly, lz);
     distance = hn::Sqrt(squared);
-    lx = hn::Div(lx, distance);
-    ly = hn::Div(ly, distance);
-    lz = hn::Div(lz, distance);
+    Normalize(d, lx, ly, lz);
   }
   n_dot_l = Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
                 hn::LoadU(d, surfaces.normal_z + i), lx, ly, lz);
@@ -37,7 +35,7 @@ HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceVi
       hn::Mul(hn::Set(d, light.falloff[2]), squared));
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_LIGHT_INL_H_

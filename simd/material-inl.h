@@ -9,7 +9,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // A transparent body has no light of its own inside.
 template <class D, typename Real = hn::TFromD<D>>
@@ -40,7 +40,7 @@ HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
   b = hn::IfThenElse(odd, hn::Set(d, material.odd[2]), b);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_MATERIAL_INL_H_

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "hwy/highway.h"
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
 // A lambda in a hot loop: on the target, and inlined, which compilers do not always do unasked.
@@ -21,28 +22,35 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <typename Real>
 using Lanes = hn::CappedTag<Real, kMaxLanes>;
 
 // What float cannot hold exactly enough is computed in double, half a vector at a time. `WideLanes`
-// has those lanes and `NarrowLanes` as many of Real; for double both are the whole vector.
+// has those lanes and `NarrowLanes` as many of Real. For double, and where the arithmetic is fast,
+// both are the whole vector of Real.
 template <typename Real>
-using WideLanes = std::conditional_t<std::is_same_v<Real, float>,
-                                     hn::CappedTag<double, kMaxLanes / 2>, Lanes<double>>;
+inline constexpr bool kHasWide = std::is_same_v<Real, float> && !kIsFast;
+template <typename Real>
+using WideLanes =
+    std::conditional_t<kHasWide<Real>, hn::CappedTag<double, kMaxLanes / 2>, Lanes<Real>>;
 template <typename Real>
 using NarrowLanes = hn::Rebind<Real, WideLanes<Real>>;
 
 HWY_INLINE hn::Vec<WideLanes<float>> Widen(hn::Vec<NarrowLanes<float>> v) {
+#ifdef SHEAF_FAST
+  return v;
+#else
   return hn::PromoteTo(WideLanes<float>(), v);
+#endif
 }
 HWY_INLINE hn::Vec<WideLanes<double>> Widen(hn::Vec<WideLanes<double>> v) { return v; }
 
 template <typename Real, class V>
 HWY_INLINE hn::Vec<NarrowLanes<Real>> Narrow(V v) {
-  if constexpr (std::is_same_v<Real, float>) {
+  if constexpr (kHasWide<Real>) {
     const NarrowLanes<float> d;
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
     // There DemoteTo gives the largest float for what overflows, everywhere else infinity.
@@ -154,17 +162,48 @@ HWY_INLINE V AbsDot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
                  hn::Abs(hn::Mul(az, bz)));
 }
 
+// a / b and, below, 1 / sqrt(x). Fast arithmetic takes the processor's estimate and one step of
+// Newton's method, 2 to 4 ULP; for b = 0 that gives NaN.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V Divide(D d, V a, V b) {
+  if constexpr (kIsFast) {
+    const V estimate = hn::ApproximateReciprocal(b);
+    return hn::Mul(a, hn::Mul(estimate, hn::NegMulAdd(b, estimate, hn::Set(d, 2.0f))));
+  } else {
+    return hn::Div(a, b);
+  }
+}
+
+#ifdef SHEAF_FAST
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V InverseSqrt(D d, V x) {
+  const V estimate = hn::ApproximateReciprocalSqrt(x);
+  const V half = hn::Mul(hn::Mul(x, hn::Set(d, 0.5f)), estimate);
+  return hn::Mul(estimate, hn::NegMulAdd(half, estimate, hn::Set(d, 1.5f)));
+}
+#endif
+
+// Divides the vector by its length.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void Normalize(D d, V& x, V& y, V& z) {
-  const V length = hn::Sqrt(Dot(d, x, y, z, x, y, z));
+  const V squared = Dot(d, x, y, z, x, y, z);
+#ifdef SHEAF_FAST
+  const V scale = InverseSqrt(d, squared);
+  x = hn::Mul(x, scale);
+  y = hn::Mul(y, scale);
+  z = hn::Mul(z, scale);
+#else
+  const V length = hn::Sqrt(squared);
   x = hn::Div(x, length);
   y = hn::Div(y, length);
   z = hn::Div(z, length);
+#endif
 }
 
 // NormalizeWide in src/scalar/vec3.h.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void NormalizeWide(D d, V& x, V& y, V& z) {
+  if constexpr (kIsFast) return Normalize(d, x, y, z);
   const V scale = hn::Div(hn::Set(d, hn::TFromD<D>(1)), hn::Sqrt(Dot(d, x, y, z, x, y, z)));
   x = hn::Mul(x, scale);
   y = hn::Mul(y, scale);
@@ -177,7 +216,7 @@ HWY_INLINE hn::Mask<D> LanesBelow(D d, std::uint32_t i, std::uint32_t count) {
   return hn::FirstN(d, count - i);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_MATH_INL_H_

@@ -14,7 +14,7 @@
 #include "simd/sphere-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // The most lanes that the target can have; where vectors have no fixed size, more than it has.
 template <typename Real>
@@ -208,7 +208,7 @@ HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
   StoreIds(d, Octants(d, packet), packet.octant);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_PACKET_INL_H_

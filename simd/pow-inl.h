@@ -1,4 +1,5 @@
-// x^p for highlights: src/scalar/pow.h, half a vector at a time in double.
+// x^p for highlights: src/scalar/pow.h, half a vector at a time in double; fast: e^(p ln x) in
+// float.
 #if defined(SHEAF_SIMD_POW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_POW_INL_H_
 #undef SHEAF_SIMD_POW_INL_H_
@@ -8,9 +9,12 @@
 
 #include "simd/math-inl.h"
 #include "simd/pow_terms.h"
+#ifdef SHEAF_FAST
+#include "hwy/contrib/math/math-inl.h"
+#endif
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real, class D, class V = hn::Vec<D>>
 HWY_INLINE V Log2(D d, V x) {
@@ -42,6 +46,14 @@ HWY_INLINE V Exp2(D d, V y) {
 }
 
 // x in [0, 1], p >= 0 for all lanes.
+#ifdef SHEAF_FAST
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V Pow(D d, V x, float p) {
+  const V power = hn::Exp(d, hn::Mul(hn::Set(d, p), hn::Log(d, x)));
+  const auto is_normal = hn::Ge(x, hn::Set(d, std::numeric_limits<float>::min()));
+  return hn::IfThenElse(is_normal, power, hn::Set(d, p == 0 ? 1.0f : 0.0f));
+}
+#else
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE V Pow(D d, V x, Real p) {
   const WideLanes<Real> dw;
@@ -59,8 +71,9 @@ HWY_INLINE V Pow(D d, V x, Real p) {
   }
   return hn::Load(d, lanes);
 }
+#endif
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_POW_INL_H_

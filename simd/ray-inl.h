@@ -9,7 +9,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> LoadTMin(D d, const RayIntervals<Real>& intervals, std::uint32_t i) {
@@ -49,7 +49,7 @@ HWY_INLINE hn::Mask<D> IsTraceable(D d, V ox, V oy, V oz, V dx, V dy, V dz, V t_
   return hn::And(hn::And(finite, has_direction), hn::Le(t_min, t_max));
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_RAY_INL_H_

@@ -27,8 +27,7 @@ void ShadeAmbientLanes(const MaterialData<Real>& material, const SurfaceView<Rea
     hn::StoreU(ambient(2, b), d, colours.b + i);
   }
 }
-constexpr auto& ShadeAmbientF32 = ShadeAmbientLanes<float>;
-constexpr auto& ShadeAmbientF64 = ShadeAmbientLanes<double>;
+SHEAF_NAME_KERNELS(ShadeAmbient);
 
 }  // namespace sheaf::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -36,16 +35,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::simd {
 
-HWY_EXPORT(ShadeAmbientF32);
-HWY_EXPORT(ShadeAmbientF64);
+SHEAF_EXPORT(ShadeAmbient);
 
 template <typename Real>
 void ShadeAmbient(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
                   std::uint32_t count, const ColourOutput<Real>& colours) {
   SHEAF_DISPATCH(Real, ShadeAmbient)(material, surfaces, count, colours);
 }
-template decltype(ShadeAmbient<float>) ShadeAmbient<float>;
-template decltype(ShadeAmbient<double>) ShadeAmbient<double>;
+SHEAF_INSTANTIATE(ShadeAmbient);
 
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

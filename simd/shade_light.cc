@@ -10,7 +10,7 @@
 #include "simd/pow-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
@@ -55,17 +55,15 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     add(2, b, colours.b);
   }
 }
-constexpr auto& ShadeLightF32 = ShadeLightLanes<float>;
-constexpr auto& ShadeLightF64 = ShadeLightLanes<double>;
+SHEAF_NAME_KERNELS(ShadeLight);
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
-HWY_EXPORT(ShadeLightF32);
-HWY_EXPORT(ShadeLightF64);
+SHEAF_EXPORT(ShadeLight);
 
 template <typename Real>
 void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material,
@@ -73,8 +71,7 @@ void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material
                 const ColourOutput<Real>& colours) {
   SHEAF_DISPATCH(Real, ShadeLight)(light, material, surfaces, lit, count, colours);
 }
-template decltype(ShadeLight<float>) ShadeLight<float>;
-template decltype(ShadeLight<double>) ShadeLight<double>;
+SHEAF_INSTANTIATE(ShadeLight);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

@@ -2,9 +2,10 @@
 #ifndef SHEAF_SIMD_SHADE_LIGHT_H_
 #define SHEAF_SIMD_SHADE_LIGHT_H_
 
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
 // Adds to colours[0, count) where lit != 0. Bits: as sheaf::scalar::LitBy. Reads and writes
 // PaddedCount(count) lanes.
@@ -13,6 +14,6 @@ void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material
                 const SurfaceView<Real>& surfaces, const std::uint32_t* lit, std::uint32_t count,
                 const ColourOutput<Real>& colours);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
 #endif  // SHEAF_SIMD_SHADE_LIGHT_H_

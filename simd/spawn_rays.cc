@@ -9,7 +9,7 @@
 #include "simd/material-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // src/scalar/spawn.h: how an interface splits light, half a vector at a time; `is_total` where all
 // of it is reflected.
@@ -143,17 +143,15 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
   }
   return size;
 }
-constexpr auto& SpawnRaysF32 = SpawnRaysLanes<float>;
-constexpr auto& SpawnRaysF64 = SpawnRaysLanes<double>;
+SHEAF_NAME_KERNELS(SpawnRays);
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
-HWY_EXPORT(SpawnRaysF32);
-HWY_EXPORT(SpawnRaysF64);
+SHEAF_EXPORT(SpawnRays);
 
 template <typename Real>
 SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
@@ -166,8 +164,7 @@ SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real
                                          reflected_rays, reflected_paths, refracted_rays,
                                          refracted_paths);
 }
-template decltype(SpawnRays<float>) SpawnRays<float>;
-template decltype(SpawnRays<double>) SpawnRays<double>;
+SHEAF_INSTANTIATE(SpawnRays);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

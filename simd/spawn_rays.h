@@ -2,13 +2,10 @@
 #ifndef SHEAF_SIMD_SPAWN_RAYS_H_
 #define SHEAF_SIMD_SPAWN_RAYS_H_
 
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
-namespace sheaf::simd {
-
-struct SpawnCounts {
-  std::uint32_t reflected, refracted;
-};
+namespace sheaf::SHEAF_SIMD {
 
 // Appends the children of surfaces[0, count), in order and without gaps, from position 0 of each
 // output: rays, the position of the parent in its stream (`paths.parent`) and the weight; leaves
@@ -24,6 +21,6 @@ SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real
                       const RayOutput<Real>& refracted_rays,
                       const PathOutput<Real>& refracted_paths);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
 #endif  // SHEAF_SIMD_SPAWN_RAYS_H_

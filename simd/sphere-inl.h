@@ -14,7 +14,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // The screen's part of a ray: 1 / |d|^2, or NaN where its rounding error is not relative (then the
 // screen keeps every sphere).
@@ -71,7 +71,7 @@ HWY_INLINE void SphereRoots(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, W& n
   const W a = Dot(dw, dx, dy, dz, dx, dy, dz);
   // Negated after the sum: Neg is exact, so the bits are those of -(f . d).
   const W b = hn::Neg(Dot(dw, fx, fy, fz, dx, dy, dz));
-  const W s = hn::Div(b, a);
+  const W s = Divide(dw, b, a);
   const W lx = hn::Add(fx, hn::Mul(dx, s));
   const W ly = hn::Add(fy, hn::Mul(dy, s));
   const W lz = hn::Add(fz, hn::Mul(dz, s));
@@ -82,8 +82,8 @@ HWY_INLINE void SphereRoots(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, W& n
   const W c = hn::Sub(Dot(dw, fx, fy, fz, fx, fy, fz), r2);
   const auto ahead = hn::Ge(b, zero);
   const W q = hn::IfThenElse(ahead, hn::Add(b, root), hn::Sub(b, root));
-  const W by_product = hn::Div(c, q);
-  const W by_sum = hn::Div(q, a);
+  const W by_product = Divide(dw, c, q);
+  const W by_sum = Divide(dw, q, a);
   near = hn::IfThenElse(ahead, by_product, by_sum);
   far = hn::IfThenElse(ahead, by_sum, by_product);
 }
@@ -144,7 +144,7 @@ HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V 
   return hn::And(screened, within);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_SPHERE_INL_H_

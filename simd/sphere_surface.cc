@@ -9,7 +9,7 @@
 #include "simd/sphere-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
@@ -88,17 +88,15 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
     StoreIds(dn, ray, surfaces.ray + i);
   }
 }
-constexpr auto& SphereSurfacesF32 = SphereSurfacesLanes<float>;
-constexpr auto& SphereSurfacesF64 = SphereSurfacesLanes<double>;
+SHEAF_NAME_KERNELS(SphereSurfaces);
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
-HWY_EXPORT(SphereSurfacesF32);
-HWY_EXPORT(SphereSurfacesF64);
+SHEAF_EXPORT(SphereSurfaces);
 
 template <typename Real>
 void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
@@ -106,8 +104,7 @@ void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays
                     const SurfaceOutput<Real>& surfaces) {
   SHEAF_DISPATCH(Real, SphereSurfaces)(spheres, rays, hits, batch, needs, surfaces);
 }
-template decltype(SphereSurfaces<float>) SphereSurfaces<float>;
-template decltype(SphereSurfaces<double>) SphereSurfaces<double>;
+SHEAF_INSTANTIATE(SphereSurfaces);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

@@ -2,9 +2,10 @@
 #ifndef SHEAF_SIMD_SPHERE_SURFACE_H_
 #define SHEAF_SIMD_SPHERE_SURFACE_H_
 
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
 // Writes surfaces[0, batch.count) from the batch's rays, hits and spheres. Directions are unit
 // vectors. u and v are left
@@ -15,6 +16,6 @@ void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays
                     const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                     const SurfaceOutput<Real>& surfaces);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
 #endif  // SHEAF_SIMD_SPHERE_SURFACE_H_

@@ -12,7 +12,7 @@
 #include "simd/packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // An octant and a dominant axis.
 inline constexpr std::uint32_t kDirectionClasses = 8 * 4;  // one axis in four is none
@@ -59,7 +59,7 @@ inline void SortByDirection(const StrayRays& strays, std::uint32_t* sorted) {
   }
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_STRAY_RAYS_INL_H_

@@ -10,7 +10,7 @@
 #include "simd/trace_sheet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // The packet's open rays as rays, or in a packet as far as they go together.
 template <Query kQuery, typename Real>
@@ -84,7 +84,7 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_INL_H_

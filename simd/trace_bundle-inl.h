@@ -11,7 +11,7 @@
 #include "simd/trace_ray-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // A lane enters a box at the latest of plane * scale + offset over the axes, by the `enter` terms,
 // and leaves it at the earliest, by the `leave` terms. All lanes share the octant. The whole
@@ -127,7 +127,7 @@ HWY_INLINE void TraceBundle(const TreeView<Real>& tree, Bundle<Real>& bundle, st
   }
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_BUNDLE_INL_H_

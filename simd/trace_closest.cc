@@ -9,7 +9,7 @@
 #include "simd/trace-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 struct ClosestOutput {
@@ -50,17 +50,15 @@ void TraceClosestLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                               ClosestOutput<Real>{intervals, hits});
 }
 
-constexpr auto& TraceClosestF32 = TraceClosestLanes<float>;
-constexpr auto& TraceClosestF64 = TraceClosestLanes<double>;
+SHEAF_NAME_KERNELS(TraceClosest);
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
-HWY_EXPORT(TraceClosestF32);
-HWY_EXPORT(TraceClosestF64);
+SHEAF_EXPORT(TraceClosest);
 
 template <typename Real>
 void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
@@ -68,8 +66,7 @@ void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
                   const HitOutput<Real>& hits) {
   SHEAF_DISPATCH(Real, TraceClosest)(tree, rays, intervals, count, coherence, hits);
 }
-template decltype(TraceClosest<float>) TraceClosest<float>;
-template decltype(TraceClosest<double>) TraceClosest<double>;
+SHEAF_INSTANTIATE(TraceClosest);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

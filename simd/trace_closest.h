@@ -2,9 +2,10 @@
 #ifndef SHEAF_SIMD_TRACE_CLOSEST_H_
 #define SHEAF_SIMD_TRACE_CLOSEST_H_
 
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
 // Writes hits[0, count). Rays may be in any order and of any coherence, whatever `coherence` says;
 // equal t goes to the lowest primitive id. A ray with a component that is not finite, without a
@@ -16,6 +17,6 @@ void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
                   const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                   const HitOutput<Real>& hits);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
 #endif  // SHEAF_SIMD_TRACE_CLOSEST_H_

@@ -8,7 +8,7 @@
 #include "simd/trace-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 struct OcclusionOutput {
@@ -39,17 +39,15 @@ void TraceOccludedLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                                OcclusionOutput<Real>{occluded});
 }
 
-constexpr auto& TraceOccludedF32 = TraceOccludedLanes<float>;
-constexpr auto& TraceOccludedF64 = TraceOccludedLanes<double>;
+SHEAF_NAME_KERNELS(TraceOccluded);
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
-HWY_EXPORT(TraceOccludedF32);
-HWY_EXPORT(TraceOccludedF64);
+SHEAF_EXPORT(TraceOccluded);
 
 template <typename Real>
 void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
@@ -57,8 +55,7 @@ void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
                    std::uint32_t* occluded) {
   SHEAF_DISPATCH(Real, TraceOccluded)(tree, rays, intervals, count, coherence, occluded);
 }
-template decltype(TraceOccluded<float>) TraceOccluded<float>;
-template decltype(TraceOccluded<double>) TraceOccluded<double>;
+SHEAF_INSTANTIATE(TraceOccluded);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

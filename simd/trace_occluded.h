@@ -2,9 +2,10 @@
 #ifndef SHEAF_SIMD_TRACE_OCCLUDED_H_
 #define SHEAF_SIMD_TRACE_OCCLUDED_H_
 
+#include "simd/arithmetic.h"
 #include "simd/layout.h"
 
-namespace sheaf::simd {
+namespace sheaf::SHEAF_SIMD {
 
 // Writes occluded[0, count): 1 where some primitive lies within the ray's interval, else 0. The
 // rays as in TraceClosest. Reads and writes PaddedCount(count) lanes.
@@ -13,6 +14,6 @@ void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
                    const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
                    std::uint32_t* occluded);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf::SHEAF_SIMD
 
 #endif  // SHEAF_SIMD_TRACE_OCCLUDED_H_

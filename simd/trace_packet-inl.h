@@ -9,7 +9,7 @@
 #include "simd/trace_bundle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Up to so many rays go on one by one.
 template <typename Real>
@@ -167,7 +167,7 @@ HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, st
   }
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_PACKET_INL_H_

@@ -11,7 +11,7 @@
 #include "simd/leaf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // A node's planes are float; lanes of Real hold them exactly.
 template <class D>
@@ -130,7 +130,7 @@ HWY_INLINE void TraceRays(const TreeView<Real>& tree, Packet<Real>& packet, std:
   }
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_RAY_INL_H_

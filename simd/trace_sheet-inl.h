@@ -13,7 +13,7 @@
 #include "simd/trace_tile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Whether all open rays have one direction, to the bit.
 template <typename Real>
@@ -123,7 +123,7 @@ HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Tile<Real>& tile) {
   });
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_SHEET_INL_H_

@@ -13,7 +13,7 @@
 #include "simd/trace_packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Up to so many packets of a tile go on as packets. Occlusion ends at any hit, which leaves holes
 // in a tile, and it is asked of rays to points at all depths: it pays to give up tiles sooner.
@@ -402,7 +402,7 @@ HWY_NOINLINE void TraceTile(const TreeView<Real>& tree, Tile<Real>& tile) {
   });
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRACE_TILE_INL_H_

@@ -13,7 +13,7 @@
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sheaf::simd::HWY_NAMESPACE {
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // std::min(a, b) and std::max(a, b), down to the sign of zero.
 template <class V>
@@ -76,7 +76,7 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
   if (hn::AllFalse(d, inside)) return inside;
 
   const V scaled_t = hn::Add(hn::Add(hn::Mul(ua, az), hn::Mul(vb, bz)), hn::Mul(wc, cz));
-  t = hn::Div(hn::Div(scaled_t, sum), dz);
+  t = Divide(d, Divide(d, scaled_t, sum), dz);
   const M outside = hn::And(inside, hn::Or(IsOutsideExtent(d, hn::Mul(t, dx), ax, bx, cx),
                                            IsOutsideExtent(d, hn::Mul(t, dy), ay, by, cy)));
   if (HWY_UNLIKELY(!hn::AllFalse(d, outside))) {
@@ -95,7 +95,7 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
   return inside;
 }
 
-}  // namespace sheaf::simd::HWY_NAMESPACE
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // SHEAF_SIMD_TRIANGLE_INL_H_

@@ -94,8 +94,7 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     StoreIds(dn, ray, surfaces.ray + i);
   }
 }
-constexpr auto& TriangleSurfacesF32 = TriangleSurfacesLanes<float>;
-constexpr auto& TriangleSurfacesF64 = TriangleSurfacesLanes<double>;
+SHEAF_NAME_KERNELS(TriangleSurfaces);
 
 }  // namespace sheaf::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -103,8 +102,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sheaf::simd {
 
-HWY_EXPORT(TriangleSurfacesF32);
-HWY_EXPORT(TriangleSurfacesF64);
+SHEAF_EXPORT(TriangleSurfaces);
 
 template <typename Real>
 void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
@@ -112,8 +110,7 @@ void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>
                       const SurfaceOutput<Real>& surfaces) {
   SHEAF_DISPATCH(Real, TriangleSurfaces)(triangles, rays, hits, batch, needs, surfaces);
 }
-template decltype(TriangleSurfaces<float>) TriangleSurfaces<float>;
-template decltype(TriangleSurfaces<double>) TriangleSurfaces<double>;
+SHEAF_INSTANTIATE(TriangleSurfaces);
 
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

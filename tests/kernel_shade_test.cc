@@ -331,7 +331,7 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
       auto view = parents.view();
       if (round % 2) view.weight_r = view.weight_g = view.weight_b = nullptr;
       const Real min_weight = round % 3 ? Real(0) : Real(0.25);
-      const simd::SpawnCounts counts =
+      const SpawnCounts counts =
           simd::SpawnRays(material, stream.view(), count, view, min_weight, reflected.output(),
                           reflected_paths.output(), refracted.output(), refracted_paths.output());
 

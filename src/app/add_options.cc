@@ -26,8 +26,8 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
 
 void AddPrecision(CLI::App& app, std::string& name) {
   app.add_option("--precision", name, "Arithmetic")
-      ->option_text("strict|double")
-      ->check(CLI::IsMember({"strict", "double"}));
+      ->option_text("strict|fast|double")
+      ->check(CLI::IsMember({"strict", "fast", "double"}));
 }
 
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description) {

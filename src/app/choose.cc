@@ -66,7 +66,10 @@ Status ChooseTarget(const std::string& target, RenderOptions& options) {
 }
 
 Precision PrecisionOf(const std::string& name) {
-  return name == "double" ? Precision::kDouble : Precision::kStrict;
+  for (const Precision precision : {Precision::kFast, Precision::kDouble}) {
+    if (name == PrecisionName(precision)) return precision;
+  }
+  return Precision::kStrict;
 }
 
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,

@@ -36,9 +36,7 @@ struct Setting {
   RenderOptions options;
 
   std::string Name() const {
-    std::string name =
-        fmt::format("{}, {} spp", options.precision == Precision::kDouble ? "double" : "strict",
-                    options.samples);
+    std::string name = fmt::format("{}, {} spp", PrecisionName(options.precision), options.samples);
     if (options.contrast) name += fmt::format(", adaptive {:g}", *options.contrast);
     if (options.min_weight > 0) name += fmt::format(", min-weight {:g}", options.min_weight);
     return name + fmt::format(", depth {}", options.max_depth);
@@ -72,6 +70,8 @@ std::vector<Setting> ListSettings(const RenderOptions& base) {
     Setting plain{usable.front(), base};
     plain.options.samples = samples;
     plain.options.precision = Precision::kDouble;
+    settings.push_back(plain);
+    plain.options.precision = Precision::kFast;
     settings.push_back(plain);
     plain.options.precision = Precision::kStrict;
     for (std::size_t i = 1; i <= usable.size(); ++i) {

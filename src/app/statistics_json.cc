@@ -48,7 +48,7 @@ Json FrameJson(const FrameRecord& frame) {
       {"samples", options.samples},
       {"max_depth", options.max_depth},
       {"target", stats.target},
-      {"precision", options.precision == Precision::kDouble ? "double" : "strict"},
+      {"precision", PrecisionName(options.precision)},
       {"threads", stats.threads},
       {"tile", options.tile_size},
       {"primitives",

@@ -32,7 +32,8 @@ double SecondsSince(Clock::time_point start) {
 template <typename Real>
 class ScalarTileRenderer {
  public:
-  ScalarTileRenderer(const FrameView<Real>& frame, Timing /*timing*/, const std::atomic<bool>& stop)
+  ScalarTileRenderer(const FrameView<Real>& frame, const RenderOptions& /*options*/,
+                     const std::atomic<bool>& stop)
       : frame_(frame), stop_(stop) {}
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
@@ -154,7 +155,7 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
   stats.threads = static_cast<int>(std::min<std::int64_t>(wanted, tiles));
   std::vector<std::unique_ptr<Worker<Renderer>>> workers(static_cast<std::size_t>(stats.threads));
   for (auto& worker : workers) {
-    worker.reset(new Worker<Renderer>{Renderer(frame, options.timing, progress.stop), {}});
+    worker.reset(new Worker<Renderer>{Renderer(frame, options, progress.stop), {}});
   }
 
   BandQueue queue(sink, progress.stop);
@@ -251,6 +252,9 @@ std::string Complaint(const RenderOptions& options) {
   if (options.contrast && !(*options.contrast >= 0 && *options.contrast <= 1)) {
     return "contrast must lie in [0, 1]";
   }
+  if (options.precision == Precision::kFast && options.engine == Engine::kScalar) {
+    return "fast precision needs a SIMD target";
+  }
   if (options.crop) {
     const PixelRect& crop = *options.crop;
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > options.width || crop.y1 > options.height ||
@@ -276,12 +280,18 @@ Status RenderToSink(const Scene& scene, const Camera& camera, const RenderOption
     case Precision::kDouble:
       return RenderIn<double>(scene, camera, options, sink, kept_stats, kept_progress);
     case Precision::kStrict:
+    case Precision::kFast:
       break;
   }
   return RenderIn<float>(scene, camera, options, sink, kept_stats, kept_progress);
 }
 
 }  // namespace
+
+const char* PrecisionName(Precision precision) {
+  static constexpr const char* kNames[] = {"strict", "fast", "double"};
+  return kNames[static_cast<int>(precision)];
+}
 
 const char* PhaseName(Phase phase) {
   static constexpr const char* kNames[] = {"generate", "trace",  "bin",   "surface",

@@ -19,8 +19,11 @@ namespace sheaf {
 // What a picture is computed in; see docs/numerics.md.
 enum class Precision {
   kStrict,  // float, correctly rounded, never fused: the same bits everywhere
+  kFast,    // float, fused and approximate: other bits on every target; SIMD engine only
   kDouble,  // the same renderer on double lanes
 };
+
+const char* PrecisionName(Precision precision);  // "strict", "fast" or "double"
 
 enum class Engine {
   kScalar,  // src/scalar, one ray at a time

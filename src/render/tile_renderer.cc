@@ -7,11 +7,6 @@
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
 #include "simd/shade_ambient.h"
-#include "simd/shade_light.h"
-#include "simd/spawn_rays.h"
-#include "simd/sphere_surface.h"
-#include "simd/trace_closest.h"
-#include "simd/trace_occluded.h"
 #include "simd/triangle_surface.h"
 #include "src/scalar/render_adaptively.h"
 
@@ -99,7 +94,7 @@ void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth)
 
   auto rays = bundle.rays.view();
   if (depth == 0) rays.source = nullptr;
-  simd::TraceClosest(frame_.tree, rays, {}, bundle.count, Coherence::kUnknown, hits_.output());
+  kernels_.trace_closest(frame_.tree, rays, {}, bundle.count, Coherence::kUnknown, hits_.output());
   Charge(Phase::kTrace, bundle.count, bundle.count);
   binner_.Bin(hits_.view().primitive, bundle.count, frame_.primitives);
   Charge(Phase::kBin);
@@ -122,8 +117,8 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
   const MaterialData<Real>& material = frame_.materials[bin.material];
   auto rays = bundle.rays.view();
   if (bin.shape == ShapeKind::kSphere) {
-    simd::SphereSurfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch, material.needs,
-                         surfaces_.output());
+    kernels_.sphere_surfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch, material.needs,
+                             surfaces_.output());
   } else {
     simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
                            surfaces_.output());
@@ -157,8 +152,8 @@ void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material, std::ui
     if (facing == 0) continue;
     const std::uint32_t lit = light.casts_shadows ? FindShadows(light, count) : facing;
     if (lit == 0) continue;
-    simd::ShadeLight(light, material, surfaces_.view(), lit_.data(), count,
-                     surface_colours_.output());
+    kernels_.shade_light(light, material, surfaces_.view(), lit_.data(), count,
+                         surface_colours_.output());
     Charge(Phase::kShade, lit, count);
   }
 }
@@ -170,8 +165,8 @@ std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light, std:
   rays_.shadow += size;
   RayIntervals<Real> intervals;
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
-  simd::TraceOccluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
-                      occluded_.data());
+  kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
+                          occluded_.data());
   std::uint32_t lit = size;
   for (std::uint32_t i = 0; i < size; ++i) {
     lit_[surface_of_ray_[i]] = 1 - occluded_[i];
@@ -186,12 +181,12 @@ void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData
                                std::uint32_t count, int depth) {
   auto parents = bundle.paths.view();
   if (depth == 0) parents.weight_r = parents.weight_g = parents.weight_b = nullptr;
-  const simd::SpawnCounts spawned =
-      simd::SpawnRays(material, surfaces_.view(), count, parents, frame_.min_weight,
-                      next_reflected_.rays.output(next_reflected_.count),
-                      next_reflected_.paths.output(next_reflected_.count),
-                      next_refracted_.rays.output(next_refracted_.count),
-                      next_refracted_.paths.output(next_refracted_.count));
+  const SpawnCounts spawned =
+      kernels_.spawn_rays(material, surfaces_.view(), count, parents, frame_.min_weight,
+                          next_reflected_.rays.output(next_reflected_.count),
+                          next_reflected_.paths.output(next_reflected_.count),
+                          next_refracted_.rays.output(next_refracted_.count),
+                          next_refracted_.paths.output(next_refracted_.count));
   next_reflected_.count += spawned.reflected;
   next_refracted_.count += spawned.refracted;
   reflecting_bins_ += spawned.reflected > 0;

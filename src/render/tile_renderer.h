@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <type_traits>
 #include <vector>
 
+#include "simd/kernels.h"
 #include "simd/target.h"
 #include "src/render/bin_hits.h"
 #include "src/render/ray_bundle.h"
@@ -21,11 +23,14 @@ namespace sheaf {
 template <typename Real>
 class TileRenderer {
  public:
-  // Once `stop` is set a call of Render ends soon, and what it leaves is rubbish.
-  TileRenderer(const FrameView<Real>& frame, Timing timing, const std::atomic<bool>& stop)
+  // Takes of the options the precision, strict or fast, and the timing. Once `stop` is set a call
+  // of Render ends soon, and what it leaves is rubbish.
+  TileRenderer(const FrameView<Real>& frame, const RenderOptions& options,
+               const std::atomic<bool>& stop)
       : frame_(frame),
+        kernels_(KernelsFor(options.precision)),
         binner_(frame.materials.size()),
-        timing_(timing),
+        timing_(options.timing),
         stop_(stop),
         lanes_(std::max(
             1u, static_cast<std::uint32_t>(simd::RunningLanes() * sizeof(float) / sizeof(Real)))) {}
@@ -58,6 +63,13 @@ class TileRenderer {
     std::uint32_t capacity_ = 0;
   };
 
+  static Kernels<Real> KernelsFor(Precision precision) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (precision == Precision::kFast) return FastKernels();
+    }
+    return StrictKernels<Real>();
+  }
+
   void RenderAdaptively(const PixelRect& tile);
   void FindEdges(const PixelRect& tile);
   void OrderPixels(const PixelRect& tile);
@@ -83,6 +95,7 @@ class TileRenderer {
   void Charge(Phase phase, std::uint32_t live, std::uint32_t count);
 
   const FrameView<Real>& frame_;
+  const Kernels<Real> kernels_;
   HitBinner binner_;
   Timing timing_;
   const std::atomic<bool>& stop_;
