@@ -162,42 +162,53 @@ HWY_INLINE V AbsDot(D /*d*/, V ax, V ay, V az, V bx, V by, V bz) {
                  hn::Abs(hn::Mul(az, bz)));
 }
 
-// a / b and, below, 1 / sqrt(x). Fast arithmetic takes the processor's estimate and one step of
-// Newton's method, 2 to 4 ULP; for b = 0 that gives NaN.
+// Fast arithmetic takes the processor's estimates of 1 / x and 1 / sqrt(x), of 12 bits on x86 and 8
+// or more elsewhere, and refines them by Newton's method to 2 to 4 ULP. Both give NaN for 0.
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+inline constexpr int kNewtonSteps = 1;
+#else
+inline constexpr int kNewtonSteps = 2;
+#endif
+
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Divide(D d, V a, V b) {
   if constexpr (kIsFast) {
-    const V estimate = hn::ApproximateReciprocal(b);
-    return hn::Mul(a, hn::Mul(estimate, hn::NegMulAdd(b, estimate, hn::Set(d, 2.0f))));
+    V inverse = hn::ApproximateReciprocal(b);
+    for (int i = 0; i < kNewtonSteps; ++i) {
+      inverse = hn::Mul(inverse, hn::NegMulAdd(b, inverse, hn::Set(d, hn::TFromD<D>(2))));
+    }
+    return hn::Mul(a, inverse);
   } else {
     return hn::Div(a, b);
   }
 }
 
-#ifdef SHEAF_FAST
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V InverseSqrt(D d, V x) {
-  const V estimate = hn::ApproximateReciprocalSqrt(x);
-  const V half = hn::Mul(hn::Mul(x, hn::Set(d, 0.5f)), estimate);
-  return hn::Mul(estimate, hn::NegMulAdd(half, estimate, hn::Set(d, 1.5f)));
+HWY_INLINE V FastInverseSqrt(D d, V x) {
+  const V half = hn::Mul(x, hn::Set(d, hn::TFromD<D>(0.5)));
+  V inverse = hn::ApproximateReciprocalSqrt(x);
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const V error = hn::NegMulAdd(hn::Mul(half, inverse), inverse, hn::Set(d, hn::TFromD<D>(1.5)));
+    inverse = hn::Mul(inverse, error);
+  }
+  return inverse;
 }
-#endif
 
 // Divides the vector by its length.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void Normalize(D d, V& x, V& y, V& z) {
   const V squared = Dot(d, x, y, z, x, y, z);
-#ifdef SHEAF_FAST
-  const V scale = InverseSqrt(d, squared);
-  x = hn::Mul(x, scale);
-  y = hn::Mul(y, scale);
-  z = hn::Mul(z, scale);
-#else
-  const V length = hn::Sqrt(squared);
-  x = hn::Div(x, length);
-  y = hn::Div(y, length);
-  z = hn::Div(z, length);
-#endif
+  if constexpr (kIsFast) {
+    const V scale = FastInverseSqrt(d, squared);
+    x = hn::Mul(x, scale);
+    y = hn::Mul(y, scale);
+    z = hn::Mul(z, scale);
+  } else {
+    const V length = hn::Sqrt(squared);
+    x = hn::Div(x, length);
+    y = hn::Div(y, length);
+    z = hn::Div(z, length);
+  }
 }
 
 // NormalizeWide in src/scalar/vec3.h.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "exact.h"
 #include "random_scene.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/render_pixel.h"
@@ -18,8 +19,6 @@ namespace {
 using scalar::Ray;
 using scalar::Surface;
 using scalar::Vec3;
-
-using Exact = __float128;  // decides on which side of a plane or sphere a float point lies
 
 Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "exact.h"
 #include "random_scene.h"
 #include "src/scalar/trace.h"
 
@@ -18,58 +19,8 @@ namespace {
 using scalar::Ray;
 using scalar::Vec3;
 
-// 113 bits. Long double does not suffice: at 10^6 radii b^2 - a c loses 40 bits to cancellation and
-// near tangency 10 to 24 more, which of 64 would leave fewer than a float has.
-using Exact = __float128;
-
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// Two of Newton's steps take the 53 bits of the double root past 113.
-Exact Sqrt(Exact x) {
-  if (x <= 0) return 0;
-  Exact root = std::sqrt(static_cast<double>(x));
-  for (int i = 0; i < 2; ++i) root = (root + x / root) / 2;
-  return root;
-}
-
-Exact Abs(Exact x) { return x < 0 ? -x : x; }
-
-struct ExactRoots {
-  Exact near, far;
-};
-
-// What the line of a ray and a sphere have to do with each other, of the numbers as they stand.
-struct ExactLine {
-  Exact a, b, c;   // a t^2 - 2 b t + c = 0
-  Exact l2;        // squared distance of the line from the centre
-  Exact f_length;  // of the origin from the centre
-
-  ExactLine(const Ray<float>& ray, Vec3<float> center, float radius) {
-    const Vec3<Exact> f = ray.origin.To<Exact>() - center.To<Exact>();
-    const Vec3<Exact> d = ray.direction.To<Exact>();
-    const Exact r = radius, f2 = scalar::Dot(f, f);
-    a = scalar::Dot(d, d), b = -scalar::Dot(f, d), c = f2 - r * r;
-    l2 = f2 - b * b / a;
-    f_length = Sqrt(f2);
-  }
-  std::optional<ExactRoots> Roots() const {
-    const Exact discriminant = b * b - a * c;
-    if (discriminant < 0) return std::nullopt;
-    const Exact root = Sqrt(discriminant);
-    // The root without cancellation first.
-    const Exact q = b >= 0 ? b + root : b - root;
-    if (b >= 0) return ExactRoots{c / q, q / a};
-    return ExactRoots{q / a, c / q};
-  }
-};
-
-double UlpsOff(float got, Exact exact) {
-  int exponent = 0;
-  std::frexp(static_cast<double>(exact), &exponent);
-  const double last = std::ldexp(1.0, std::max(exponent, -125) - 24);
-  return static_cast<double>(Abs(static_cast<Exact>(got) - exact)) / last;
-}
 
 // One sphere with its view.
 struct OneSphere {

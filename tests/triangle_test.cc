@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "exact.h"
 #include "random_scene.h"
 #include "simd/trace_closest.h"
 #include "src/bvh/build_tree.h"
@@ -23,8 +24,6 @@ namespace {
 
 using scalar::Ray;
 using scalar::Vec3;
-
-using Exact = __float128;  // float products and their sums without a rounding that shows
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -507,30 +506,6 @@ TEST_CASE("perturbed spheres are hit at every vertex") {
   }
 }
 
-struct ExactHit {
-  Exact t;
-  Vec3<Exact> point;
-  double cosine;  // of the ray with the plane's normal
-};
-
-ExactHit IntersectExactly(const Ray<float>& ray, const Vec3<float> (&vertex)[3]) {
-  const Vec3<Exact> a = vertex[0].To<Exact>();
-  const Vec3<Exact> n = scalar::Cross(vertex[1].To<Exact>() - a, vertex[2].To<Exact>() - a);
-  const Vec3<Exact> o = ray.origin.To<Exact>(), d = ray.direction.To<Exact>();
-  const Exact across = scalar::Dot(n, d);
-  const Exact t = scalar::Dot(n, a - o) / across;
-  const double lengths =
-      std::sqrt(static_cast<double>(scalar::Dot(n, n)) * static_cast<double>(scalar::Dot(d, d)));
-  return {t, o + d * t, std::abs(static_cast<double>(across)) / lengths};
-}
-
-double UlpsOff(float got, Exact exact) {
-  int exponent = 0;
-  std::frexp(static_cast<double>(exact), &exponent);
-  return std::abs(static_cast<double>(static_cast<Exact>(got) - exact)) /
-         std::ldexp(1.0, exponent - 24);
-}
-
 // What is rounded are vertices seen from the origin: their reach over the length of the path is the
 // problem's own condition, 1 to 2 from a distance and large right before a large triangle. Needles
 // lose the ratio of their sides besides.
@@ -552,7 +527,7 @@ TEST_CASE("t is within 8 ULP times reach over path, of no needle and away from g
                                 v[1].To<double>() * (w[1] / sum) + v[2].To<double>() * (w[2] / sum);
     const Ray<float> ray{origin, (target - origin.To<double>()).To<float>()};
     const auto hit = Intersect(ray, v[0], v[1], v[2]);
-    const ExactHit exact = IntersectExactly(ray, v);
+    const ExactPlaneHit exact = IntersectExactly(ray, v);
     if (!hit || exact.cosine < 0.5) continue;
     const auto length = [](Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); };
     const Vec3<double> ab = (v[1] - v[0]).To<double>(), ac = (v[2] - v[0]).To<double>();
