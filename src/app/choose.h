@@ -25,7 +25,7 @@ Status ChooseTarget(const std::string& target);
 // The same for one frame, whose engine it sets.
 Status ChooseTarget(const std::string& target, RenderOptions& options);
 
-// "strict" or "double".
+// "strict", "fast" or "double".
 Precision PrecisionOf(const std::string& name);
 
 // A scene's settings, and what the command line says instead.

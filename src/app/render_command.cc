@@ -104,6 +104,9 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.crop = request.crop;
   options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
   options.precision = PrecisionOf(request.precision);
+  if (options.precision == Precision::kFast && options.engine == Engine::kScalar) {
+    return Usage("--precision fast: needs a SIMD target, not --target scalar");
+  }
   options.threads = request.threads.value_or(options.threads);
   options.tile_size = request.tile_size.value_or(options.tile_size);
   options.tile_costs = request.layers.empty() ? TileCosts::kOff : TileCosts::kOn;
