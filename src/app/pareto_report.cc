@@ -90,8 +90,9 @@ std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>
       "set title {} noenhanced\n"
       "set xlabel \"milliseconds a frame\"\nset ylabel \"error (RMSE)\"\n"
       "set logscale xy\nset grid\nset key outside noenhanced\n",
-      Quoted(fmt::format("{}, {}, {}x{}, {} thread{}", title.scene, title.camera, title.width,
-                         title.height, title.threads, title.threads == 1 ? "" : "s")));
+      Quoted(fmt::format("{}, {}, {}x{}, {} thread{}",
+                         std::filesystem::path(title.scene).filename().string(), title.camera,
+                         title.width, title.height, title.threads, title.threads == 1 ? "" : "s")));
   for (const auto& [terminal, ending] : {std::pair("svg size 900,600 background \"white\"", "svg"),
                                          std::pair("pngcairo size 900,600", "png")}) {
     fmt::format_to(out, "set terminal {}\nset output {}\n", terminal,
