@@ -22,7 +22,6 @@ namespace {
 using scalar::Ray;
 using scalar::Vec3;
 
-Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 double Length(Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); }
 double Distance(Vec3<double> a, Vec3<double> b) { return Length(a - b); }
 

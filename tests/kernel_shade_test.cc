@@ -32,12 +32,6 @@ bool SameBits(Vec3<Real> a, Real x, Real y, Real z) {
   return SameBits(a.x, x) && SameBits(a.y, y) && SameBits(a.z, z);
 }
 
-template <typename Real>
-Vec3<Real> RandomUnit(Random& random) {
-  const Vec3d v = UniformPoint(random, -1, 1);
-  return scalar::Normalize(Vec3<double>{v.x, v.y, v.z}).template To<Real>();
-}
-
 // Rays that all hit primitive `local` of their kind, with their surfaces by the specification.
 template <typename Real>
 struct HitSample {
@@ -56,7 +50,7 @@ HitSample<Real> SampleHits(Random& random, const CompiledScene<Real>& scene, Sha
   const auto geometry = scene.geometry();
   while (sample.rays.size() < count) {
     const Vec3d o = UniformPoint(random, -3, 3);
-    const Ray<Real> ray{Vec3<double>{o.x, o.y, o.z}.To<Real>(), RandomUnit<Real>(random)};
+    const Ray<Real> ray{Vec3<double>{o.x, o.y, o.z}.To<Real>(), RandomUnit(random).To<Real>()};
     const auto hit = scalar::TraceClosest(geometry, ray);
     if (hit.primitive == kNoPrimitive) continue;
     const std::uint32_t local = scene.primitives[hit.primitive].local;
@@ -95,8 +89,8 @@ std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count) {
     Surface<Real> s;
     const Vec3d p = UniformPoint(random, -5, 5);
     s.position = Vec3<double>{p.x, p.y, p.z}.To<Real>();
-    s.direction = RandomUnit<Real>(random);
-    s.normal = RandomUnit<Real>(random);
+    s.direction = RandomUnit(random).To<Real>();
+    s.normal = RandomUnit(random).To<Real>();
     if (scalar::Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
     if (random() % 8 == 0) s.normal = -s.direction;
     s.u = static_cast<Real>(Uniform(random, 0, 1));
@@ -138,7 +132,7 @@ LightData<Real> RandomLight(Random& random, LightKind kind) {
   LightData<Real> light{};
   light.kind = kind;
   const Vec3d p = UniformPoint(random, -30, 30);
-  const auto unit = RandomUnit<Real>(random);
+  const auto unit = RandomUnit(random).To<Real>();
   for (int i = 0; i < 3; ++i) {
     light.vector[i] = kind == LightKind::kDirectional ? unit[i] : static_cast<Real>(p[i]);
     light.rgb[i] = static_cast<Real>(Uniform(random, 0, 100));

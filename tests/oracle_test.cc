@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "exact.h"
 #include "random_scene.h"
 #include "simd/kernels.h"
+#include "simd/roundoffs.h"
 #include "simd/triangle_surface.h"
 #include "src/bvh/build_tree.h"
-#include "src/scalar/pow.h"
 #include "targets.h"
 
 namespace sheaf {
@@ -62,10 +61,6 @@ struct Measured {
   }
 };
 
-Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
-Vec3<double> RandomUnit(Random& random) {
-  return scalar::Normalize(ToVec3(UniformPoint(random, -1, 1)));
-}
 double Length(Vec3<double> v) { return std::sqrt(scalar::Dot(v, v)); }
 
 // Of two unit vectors, as rounded.
@@ -181,7 +176,6 @@ void MeasureSpheres(const Kernels<Real>& kernels, Measured& measured) {
 template <typename Real>
 void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
   Random random(61);
-  constexpr double kRoundoffOf = std::numeric_limits<Real>::epsilon() / 2;
   for (int round = 0; round < 600; ++round) {
     const double size = std::exp2(Uniform(random, -8, 4));
     const Vec3<double> centre = ToVec3(UniformPoint(random, -1, 1));
@@ -216,7 +210,7 @@ void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
       double reach = path;
       for (const Vec3<float> p : v) reach = std::max(reach, Length(p.To<double>() - origin));
       measured.triangle_t.Add(UlpsOff(hits.t[i], exact.t) * path / reach);
-      const double scale = longest / (reach * kRoundoffOf);
+      const double scale = longest / (reach * static_cast<double>(kRoundoff<Real>));
       measured.barycentrics.Add(scale * static_cast<double>(Abs(Exact(hits.u[i]) - exact.u)));
       measured.barycentrics.Add(scale * static_cast<double>(Abs(Exact(hits.v[i]) - exact.v)));
     }
@@ -229,6 +223,18 @@ void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
           measured.triangle_normal.Add(AngleTo(normal, IntersectExactly(rays[i], v).normal));
         });
   }
+}
+
+// A surface at the origin.
+template <typename Real>
+void PutSurface(const SurfaceOutput<Real>& out, std::uint32_t i, Vec3<float> normal,
+                Vec3<float> direction, std::uint32_t source) {
+  const auto n = normal.To<Real>(), d = direction.To<Real>();
+  out.normal_x[i] = n.x, out.normal_y[i] = n.y, out.normal_z[i] = n.z;
+  out.direction_x[i] = d.x, out.direction_y[i] = d.y, out.direction_z[i] = d.z;
+  out.position_x[i] = out.position_y[i] = out.position_z[i] = 0;
+  out.u[i] = out.v[i] = out.offset[i] = 0;
+  out.source[i] = source, out.ray[i] = i;
 }
 
 // Glass of index 1.1 to 2.5 from both sides; half of the rays inside come within 1e-6 of the
@@ -256,12 +262,7 @@ void MeasureInterfaces(const Kernels<Real>& kernels, Measured& measured) {
         d = side * sin - n * std::sqrt(1 - sin * sin);
       }
       normals.push_back(n.To<float>()), directions.push_back(d.To<float>());
-      const auto rn = normals[i].To<Real>(), rd = directions[i].To<Real>();
-      out.normal_x[i] = rn.x, out.normal_y[i] = rn.y, out.normal_z[i] = rn.z;
-      out.direction_x[i] = rd.x, out.direction_y[i] = rd.y, out.direction_z[i] = rd.z;
-      out.position_x[i] = out.position_y[i] = out.position_z[i] = 0;
-      out.u[i] = out.v[i] = out.offset[i] = 0;
-      out.source[i] = inside ? kInsideBit : 0, out.ray[i] = i;
+      PutSurface(out, i, normals[i], directions[i], inside ? kInsideBit : 0);
     }
     RayStream<Real> reflected, refracted;
     PathStream<Real> parents, reflected_paths, refracted_paths;
@@ -331,10 +332,7 @@ void MeasureHighlights(const Kernels<Real>& kernels, Measured& measured) {
       const Vec3<float> n =
           scalar::Normalize(half + RandomUnit(random) * Uniform(random, 0, spread)).To<float>();
       const Vec3<float> direction = d.To<float>();
-      const auto rn = n.To<Real>(), rd = direction.To<Real>();
-      out.normal_x[i] = rn.x, out.normal_y[i] = rn.y, out.normal_z[i] = rn.z;
-      out.direction_x[i] = rd.x, out.direction_y[i] = rd.y, out.direction_z[i] = rd.z;
-      out.position_x[i] = out.position_y[i] = out.position_z[i] = out.u[i] = out.v[i] = 0;
+      PutSurface(out, i, n, direction, 0);
       colours.output().r[i] = colours.output().g[i] = colours.output().b[i] = 0;
       const Exact cosine =
           scalar::Dot(n.To<Exact>(), Unit(to_light.To<Exact>() - direction.To<Exact>()));

@@ -27,6 +27,12 @@ inline Vec3d UniformPoint(Random& random, double low, double high) {
   return {x, y, Uniform(random, low, high)};
 }
 
+inline scalar::Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+inline scalar::Vec3<double> RandomUnit(Random& random) {
+  return scalar::Normalize(ToVec3(UniformPoint(random, -1, 1)));
+}
+
 // `count` objects around the origin: spheres, some far and small or huge, and triangles, some
 // slivers, a few of them twice, a few without area.
 inline Scene RandomScene(Random& random, int count) {

@@ -20,12 +20,8 @@ using scalar::Ray;
 using scalar::Surface;
 using scalar::Vec3;
 
-Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }
 double Length(Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); }
-Vec3<double> RandomUnit(Random& random) {
-  return scalar::Normalize(ToVec3(UniformPoint(random, -1, 1)));
-}
 // A unit vector on the side of `normal`.
 Vec3<double> RandomAbout(Random& random, Vec3<double> normal) {
   const Vec3<double> v = RandomUnit(random);

@@ -44,11 +44,6 @@ struct OneSphere {
   }
 };
 
-Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
-Vec3<double> RandomUnit(Random& random) {
-  return scalar::Normalize(ToVec3(UniformPoint(random, -1, 1)));
-}
-
 // A ray from `distance` radii away that passes the centre at `miss` radii.
 Ray<float> RayPast(Random& random, const OneSphere& sphere, double distance, double miss) {
   const Vec3<double> axis = RandomUnit(random);

@@ -28,7 +28,6 @@ using scalar::Vec3;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }
 Vec3<float> FromBits(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return {std::bit_cast<float>(x), std::bit_cast<float>(y), std::bit_cast<float>(z)};

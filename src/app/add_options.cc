@@ -25,9 +25,11 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
 }
 
 void AddPrecision(CLI::App& app, std::string& name) {
+  std::vector<std::string> names;
+  for (const Precision precision : kPrecisions) names.push_back(PrecisionName(precision));
   app.add_option("--precision", name, "Arithmetic")
-      ->option_text("strict|fast|double")
-      ->check(CLI::IsMember({"strict", "fast", "double"}));
+      ->option_text(fmt::format("{}", fmt::join(names, "|")))
+      ->check(CLI::IsMember(names));
 }
 
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description) {

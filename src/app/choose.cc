@@ -66,7 +66,7 @@ Status ChooseTarget(const std::string& target, RenderOptions& options) {
 }
 
 Precision PrecisionOf(const std::string& name) {
-  for (const Precision precision : {Precision::kFast, Precision::kDouble}) {
+  for (const Precision precision : kPrecisions) {
     if (name == PrecisionName(precision)) return precision;
   }
   return Precision::kStrict;

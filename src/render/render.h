@@ -23,6 +23,8 @@ enum class Precision {
   kDouble,  // the same renderer on double lanes
 };
 
+inline constexpr Precision kPrecisions[] = {Precision::kStrict, Precision::kFast,
+                                            Precision::kDouble};
 const char* PrecisionName(Precision precision);  // "strict", "fast" or "double"
 
 enum class Engine {
