@@ -26,6 +26,15 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
     // False for NaN: a light that lies on the point gives nothing.
     auto lanes = hn::And(LanesBelow(d, i, count), hn::Gt(n_dot_l, hn::Zero(d)));
     lanes = hn::And(lanes, HasLocalLight(d, material, surfaces, i));
+    if (material.needs & kNeedsNormals) {
+      const V face_dot_l =
+          Dot(d, hn::LoadU(d, surfaces.face_x + i), hn::LoadU(d, surfaces.face_y + i),
+              hn::LoadU(d, surfaces.face_z + i), lx, ly, lz);
+      lanes = hn::And(lanes, hn::Gt(face_dot_l, hn::Zero(d)));
+    }
+    if (light.is_spot) {
+      lanes = hn::And(lanes, hn::Gt(ConeShare(d, light, lx, ly, lz), hn::Zero(d)));
+    }
     facing += static_cast<std::uint32_t>(hn::CountTrue(d, lanes));
     const auto one = hn::Set(di, hn::TFromD<decltype(di)>{1});
     StoreIds(d, hn::IfThenElseZero(hn::RebindMask(di, lanes), one), faces + i);

@@ -30,9 +30,9 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
     const V px = hn::LoadU(d, surfaces.position_x + i);
     const V py = hn::LoadU(d, surfaces.position_y + i);
     const V pz = hn::LoadU(d, surfaces.position_z + i);
-    const V nx = hn::LoadU(d, surfaces.normal_x + i);
-    const V ny = hn::LoadU(d, surfaces.normal_y + i);
-    const V nz = hn::LoadU(d, surfaces.normal_z + i);
+    const V nx = hn::LoadU(d, surfaces.face_x + i);
+    const V ny = hn::LoadU(d, surfaces.face_y + i);
+    const V nz = hn::LoadU(d, surfaces.face_z + i);
     V away = hn::LoadU(d, surfaces.offset + i);
     auto source = LoadIds(d, surfaces.source + i);
     if (light.kind == LightKind::kPointFromLight) {

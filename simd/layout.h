@@ -100,9 +100,12 @@ struct HitFields {
 template <typename Real, template <typename> class Field>
 struct SurfaceFields {
   Field<Real> position_x, position_y, position_z;
-  Field<Real> normal_x, normal_y, normal_z;           // unit, facing the ray
+  Field<Real> normal_x, normal_y, normal_z;  // shading normal: unit, on the face's side
+  Field<Real> face_x, face_y, face_z;  // the face's own normal: unit, facing the ray; these fields
+                                       // may be the normal's where the two are one
   Field<Real> direction_x, direction_y, direction_z;  // of the ray, unit
   Field<Real> u, v;                                   // surface coordinates, 0 on spheres
+  Field<Real> tint_r, tint_g, tint_b;  // what the base colour is multiplied with, point by point
   Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
   Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
   Field<std::uint32_t> ray;     // position in the ray stream
@@ -110,9 +113,10 @@ struct SurfaceFields {
   static constexpr auto kFields = std::make_tuple(
       &SurfaceFields::position_x, &SurfaceFields::position_y, &SurfaceFields::position_z,
       &SurfaceFields::normal_x, &SurfaceFields::normal_y, &SurfaceFields::normal_z,
+      &SurfaceFields::face_x, &SurfaceFields::face_y, &SurfaceFields::face_z,
       &SurfaceFields::direction_x, &SurfaceFields::direction_y, &SurfaceFields::direction_z,
-      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::offset, &SurfaceFields::source,
-      &SurfaceFields::ray);
+      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::tint_r, &SurfaceFields::tint_g,
+      &SurfaceFields::tint_b, &SurfaceFields::offset, &SurfaceFields::source, &SurfaceFields::ray);
 };
 
 // Linear RGB, one an element.
@@ -181,7 +185,11 @@ template <typename Real>
 struct TriangleArrays {
   std::uint32_t count;
   const Real* vertex[3][3];  // [vertex][axis]; NaN: never hit (stands for zero area)
-  const Real* uv[3][2];      // [vertex][u or v]
+  const Real* uv[3][2];      // [vertex][u or v]; null where no material asks for coordinates
+  // Null where no mesh has them. A normal of 0, or a mean of 0, stands for the face's own; a colour
+  // of 1 for none. Normals have any length and either side.
+  const Real* normal[3][3];  // [vertex][axis]
+  const Real* colour[3][3];  // [vertex][channel]
   const std::uint32_t* id;
 };
 
@@ -272,6 +280,15 @@ constexpr bool IsWithinBoxLimits(const TreeView<Real>& tree) {
   return is_within;
 }
 
+// The same surfaces where no normal but the face's own is used.
+template <typename Real>
+SurfaceView<Real> WithoutFaces(SurfaceView<Real> surfaces) {
+  surfaces.face_x = surfaces.normal_x;
+  surfaces.face_y = surfaces.normal_y;
+  surfaces.face_z = surfaces.normal_z;
+  return surfaces;
+}
+
 // What is asked of a ray: its nearest hit, or whether there is any.
 enum class Query { kClosest, kOccluded };
 
@@ -285,7 +302,7 @@ enum class Coherence {
 
 // ---- What a frame is shaded with ----
 
-enum class BaseColour : std::uint32_t { kConstant, kChecker };
+enum class BaseColour : std::uint32_t { kConstant, kChecker, kTexture };
 
 // What a material asks for; what it does not ask for is skipped. Asking for more changes no bit.
 inline constexpr std::uint32_t kNeedsCoordinates = 1;    // u and v, for its base colour
@@ -293,15 +310,19 @@ inline constexpr std::uint32_t kNeedsLights = 2;         // diffuse or highlight
 inline constexpr std::uint32_t kNeedsHighlight = 4;      // a power for each light
 inline constexpr std::uint32_t kNeedsChildren = 8;       // reflected or refracted rays
 inline constexpr std::uint32_t kNeedsTransmission = 16;  // Fresnel's split
-inline constexpr std::uint32_t kNeedsAll = 31;
+inline constexpr std::uint32_t kNeedsNormals = 32;       // shading normals besides the faces'
+inline constexpr std::uint32_t kNeedsTint = 64;          // a texture, or colours of vertices
+inline constexpr std::uint32_t kNeedsAll = 127;
 
 template <typename Real>
 struct MaterialData {
   std::uint32_t needs;  // NeedsOf(*this), or more
   BaseColour kind;
-  Real even[3], odd[3];  // linear RGB; the same where there is no checker
-  Real cells[2];         // checker cells across the unit interval of u and of v
-  Real ambient[3];       // ka times the ambient light
+  std::uint32_t texture;  // index into the frame's textures; of kTexture alone
+  Real even[3], odd[3];   // linear RGB; the same where there is no checker
+  Real cells[2];          // checker cells across the unit interval of u and of v
+  Real ambient[3];        // ka times the ambient light
+  Real emission[3];       // added as it is
   Real kd, ks, shininess;
   Real reflect[3], transmit[3];
   Real ior;
@@ -318,9 +339,26 @@ constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
   return (material.kind != BaseColour::kConstant ? kNeedsCoordinates : 0) |
          (material.kd > 0 || material.ks > 0 ? kNeedsLights : 0) |
          (material.ks > 0 ? kNeedsHighlight : 0) |
+         (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
          (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
          (transmits ? kNeedsTransmission : 0);
 }
+
+// How a texture goes on beyond the unit interval of a surface coordinate.
+enum class Wrap : std::uint32_t { kRepeat, kMirror, kClamp };
+enum class Filter : std::uint32_t { kNearest, kLinear };
+
+// Rows from the top, where v is 0; a texel's channels are the bytes of its number from the lowest:
+// r, g, b, a.
+template <typename Real>
+struct TextureData {
+  const std::uint32_t* texels;
+  int width, height;   // in [1, kMaxTextureSide]
+  const Real* decode;  // linear light by byte, 256 of them
+  Wrap wrap_u, wrap_v;
+  Filter filter;
+};
+inline constexpr int kMaxTextureSide = 16384;
 
 enum class LightKind : std::uint32_t {
   kPointFromLight,    // shadow rays run from the light, so that a batch shares its origin
@@ -335,6 +373,12 @@ struct LightData {
   Real rgb[3];      // colour * intensity * exposure
   Real falloff[3];  // kc, kl, kq; 1, 0, 0 for directional lights
   std::uint32_t casts_shadows;
+  // A spot light's cone: light is scaled by the square of cone_scale * cos + cone_offset, clamped
+  // to [0, 1], with cos of the angle between `axis`, the unit vector it shines along, and the ray
+  // to the surface.
+  std::uint32_t is_spot = 0;
+  Real axis[3] = {};
+  Real cone_scale = 0, cone_offset = 0;
 };
 
 // Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right

@@ -35,6 +35,20 @@ HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceVi
       hn::Mul(hn::Set(d, light.falloff[2]), squared));
 }
 
+// A spot light's share toward surfaces that see it along (lx, ly, lz): ConeShare in
+// src/scalar/shade.h.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE V ConeShare(D d, const LightData<Real>& light, V lx, V ly, V lz) {
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  const V cos = Dot(d, lx, ly, lz, hn::Set(d, light.axis[0]), hn::Set(d, light.axis[1]),
+                    hn::Set(d, light.axis[2]));
+  const V share =
+      hn::Add(hn::Mul(hn::Neg(cos), hn::Set(d, light.cone_scale)), hn::Set(d, light.cone_offset));
+  const V below_one = hn::IfThenElse(hn::Lt(share, one), share, one);
+  const V clamped = hn::IfThenElseZero(hn::Gt(share, zero), below_one);
+  return hn::Mul(clamped, clamped);
+}
+
 }  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

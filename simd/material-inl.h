@@ -23,13 +23,12 @@ HWY_INLINE hn::Mask<D> HasLocalLight(D d, const MaterialData<Real>& material,
 
 // A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
-                               const SurfaceView<Real>& surfaces, std::uint32_t i, V& r, V& g,
-                               V& b) {
+HWY_INLINE void LoadPattern(D d, const MaterialData<Real>& material,
+                            const SurfaceView<Real>& surfaces, std::uint32_t i, V& r, V& g, V& b) {
   r = hn::Set(d, material.even[0]);
   g = hn::Set(d, material.even[1]);
   b = hn::Set(d, material.even[2]);
-  if (!(material.needs & kNeedsCoordinates)) return;
+  if (!(material.needs & kNeedsCoordinates) || material.kind == BaseColour::kTexture) return;
   const V u = hn::Mul(hn::LoadU(d, surfaces.u + i), hn::Set(d, material.cells[0]));
   const V v = hn::Mul(hn::LoadU(d, surfaces.v + i), hn::Set(d, material.cells[1]));
   const V cell = hn::Add(hn::Floor(u), hn::Floor(v));
@@ -38,6 +37,17 @@ HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
   r = hn::IfThenElse(odd, hn::Set(d, material.odd[0]), r);
   g = hn::IfThenElse(odd, hn::Set(d, material.odd[1]), g);
   b = hn::IfThenElse(odd, hn::Set(d, material.odd[2]), b);
+}
+
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
+                               const SurfaceView<Real>& surfaces, std::uint32_t i, V& r, V& g,
+                               V& b) {
+  LoadPattern(d, material, surfaces, i, r, g, b);
+  if (!(material.needs & kNeedsTint)) return;
+  r = hn::Mul(r, hn::LoadU(d, surfaces.tint_r + i));
+  g = hn::Mul(g, hn::LoadU(d, surfaces.tint_g + i));
+  b = hn::Mul(b, hn::LoadU(d, surfaces.tint_b + i));
 }
 
 }  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE

@@ -20,7 +20,8 @@ void ShadeAmbientLanes(const MaterialData<Real>& material, const SurfaceView<Rea
     V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
     LoadBaseColour(d, material, surfaces, i, r, g, b);
     const auto ambient = [&](int channel, V base) HWY_ATTR {
-      return hn::IfThenElseZero(local, hn::Mul(hn::Set(d, material.ambient[channel]), base));
+      const V reflected = hn::Mul(hn::Set(d, material.ambient[channel]), base);
+      return hn::IfThenElseZero(local, hn::Add(reflected, hn::Set(d, material.emission[channel])));
     };
     hn::StoreU(ambient(0, r), d, colours.r + i);
     hn::StoreU(ambient(1, g), d, colours.g + i);

@@ -26,7 +26,8 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
       falloff = hn::Zero(d);
     LoadIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
-    const V attenuation = hn::Div(one, falloff);
+    V attenuation = hn::Div(one, falloff);
+    if (light.is_spot) attenuation = hn::Mul(attenuation, ConeShare(d, light, lx, ly, lz));
     const V diffuse = hn::Mul(hn::Set(d, material.kd), n_dot_l);
     V highlight = hn::Zero(d);
     if (material.needs & kNeedsHighlight) {

@@ -70,8 +70,11 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V dy = hn::LoadU(d, surfaces.direction_y + i);
     const V dz = hn::LoadU(d, surfaces.direction_z + i);
     const V offset = hn::LoadU(d, surfaces.offset + i);
-    const V away_x = hn::Mul(nx, offset), away_y = hn::Mul(ny, offset),
-            away_z = hn::Mul(nz, offset);
+    const V fx = hn::LoadU(d, surfaces.face_x + i);
+    const V fy = hn::LoadU(d, surfaces.face_y + i);
+    const V fz = hn::LoadU(d, surfaces.face_z + i);
+    const V away_x = hn::Mul(fx, offset), away_y = hn::Mul(fy, offset),
+            away_z = hn::Mul(fz, offset);
     const V px = hn::LoadU(d, surfaces.position_x + i);
     const V py = hn::LoadU(d, surfaces.position_y + i);
     const V pz = hn::LoadU(d, surfaces.position_z + i);
@@ -95,12 +98,21 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
       FresnelSplit(d, eta, cos_i, reflectance, cos_t, is_total);
     }
 
-    const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, VI from,
+    const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, V side, VI from,
                             const RayOutput<Real>& rays, const PathOutput<Real>& paths,
                             std::uint32_t& at) HWY_ATTR {
       const auto counts = hn::Or(hn::Or(hn::Gt(wr, least), hn::Gt(wg, least)), hn::Gt(wb, least));
       const auto kept = hn::And(lanes, counts);
       if (hn::AllFalse(d, kept)) return;
+      if (material.needs & kNeedsNormals) {
+        const auto differs = hn::Or(hn::Or(hn::Ne(nx, fx), hn::Ne(ny, fy)), hn::Ne(nz, fz));
+        const V height = Dot(d, x, y, z, fx, fy, fz);
+        const auto crosses = hn::And(differs, hn::Lt(hn::Mul(height, side), zero));
+        const V back = hn::IfThenElseZero(crosses, hn::Mul(hn::Set(d, Real(2)), height));
+        x = hn::IfThenElse(crosses, hn::Sub(x, hn::Mul(fx, back)), x);
+        y = hn::IfThenElse(crosses, hn::Sub(y, hn::Mul(fy, back)), y);
+        z = hn::IfThenElse(crosses, hn::Sub(z, hn::Mul(fz, back)), z);
+      }
       Normalize(d, x, y, z);
       const auto order = CompactOrder(d, kept);
       CompactStore(d, ox, order, rays.origin_x + at);
@@ -125,7 +137,7 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     append(reflected_weight(weight_r, 0), reflected_weight(weight_g, 1),
            reflected_weight(weight_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
            hn::Add(pz, away_z), hn::Add(dx, hn::Mul(nx, twice)), hn::Add(dy, hn::Mul(ny, twice)),
-           hn::Add(dz, hn::Mul(nz, twice)), source, reflected_rays, reflected_paths,
+           hn::Add(dz, hn::Mul(nz, twice)), one, source, reflected_rays, reflected_paths,
            size.reflected);
 
     if (hn::AllTrue(d, is_total)) continue;
@@ -138,8 +150,8 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
            refracted_weight(weight_b, 2), hn::Sub(px, away_x), hn::Sub(py, away_y),
            hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(nx, bend)),
            hn::Add(hn::Mul(dy, eta), hn::Mul(ny, bend)),
-           hn::Add(hn::Mul(dz, eta), hn::Mul(nz, bend)), hn::Xor(source, bit), refracted_rays,
-           refracted_paths, size.refracted);
+           hn::Add(hn::Mul(dz, eta), hn::Mul(nz, bend)), hn::Neg(one), hn::Xor(source, bit),
+           refracted_rays, refracted_paths, size.refracted);
   }
   return size;
 }

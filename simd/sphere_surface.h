@@ -8,9 +8,8 @@
 namespace sheaf::SHEAF_SIMD {
 
 // Writes surfaces[0, batch.count) from the batch's rays, hits and spheres. Directions are unit
-// vectors. u and v are left
-// alone unless `needs` has kNeedsCoordinates. Bits: as sheaf::scalar::SphereSurface. Reads and
-// writes PaddedCount(batch.count) lanes.
+// vectors. u and v are left alone unless `needs` has kNeedsCoordinates, faces and tints always.
+// Bits: as sheaf::scalar::SphereSurface. Reads and writes PaddedCount(batch.count) lanes.
 template <typename Real>
 void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
                     const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,

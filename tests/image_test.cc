@@ -173,11 +173,24 @@ Scene EverythingScene(std::uint64_t seed) {
     scene.materials.push_back(material);
   }
   for (Object& object : scene.objects) object.material = static_cast<std::uint32_t>(random() % 6);
-  scene.lights = {{"near", PointLight{UniformPoint(random, -6, 6), {0, 0, 1}}, {1, 1, 0.9}, 20},
-                  {"far", PointLight{{3000, 4000, 5000}, {1, 0, 0}}, {0.5, 0.6, 1}, 0.5},
-                  {"general", PointLight{{2, 7, 3}, {1, 0.1, 0.01}}, {1, 0.5, 0.5}, 1},
-                  {"sun", DirectionalLight{{-1, -2, -3}}, {0.3, 0.3, 0.3}, 1},
-                  {"soft", DirectionalLight{{1, -1, 0.5}}, {0.2, 0.2, 0.2}, 1, false}};
+  // Smooth triangles with colours: glass, and one with a texture.
+  auto image = std::make_shared<Image>(Image{"", 5, 3, {}});
+  for (int i = 0; i < 15; ++i) image->texels.push_back(static_cast<std::uint32_t>(random()));
+  Material textured = scene.materials[0];
+  textured.base_colour =
+      Texture{image, Transfer::kSrgb, Wrap::kMirror, Wrap::kRepeat, Filter::kLinear, colour()};
+  textured.emission = colour() * 0.1;
+  scene.materials.push_back(textured);
+  for (const std::uint32_t material : {6, 4}) {
+    scene.objects.push_back({"", RandomMesh(random, 8), material});
+  }
+  scene.lights = {
+      {"near", PointLight{UniformPoint(random, -6, 6), {0, 0, 1}}, {1, 1, 0.9}, 20},
+      {"far", PointLight{{3000, 4000, 5000}, {1, 0, 0}}, {0.5, 0.6, 1}, 0.5},
+      {"general", PointLight{{2, 7, 3}, {1, 0.1, 0.01}}, {1, 0.5, 0.5}, 1},
+      {"sun", DirectionalLight{{-1, -2, -3}}, {0.3, 0.3, 0.3}, 1},
+      {"soft", DirectionalLight{{1, -1, 0.5}}, {0.2, 0.2, 0.2}, 1, false},
+      {"spot", PointLight{{4, 5, 6}, {0, 0, 1}, Cone{{-4, -5, -6}, 5, 30}}, {1, 1, 1}, 40}};
   scene.settings.background = {0.1, 0.2, 0.3};
   Camera camera{"eye", UniformPoint(random, 7, 9), {0, 0, 0}, {0, 1, 0}, Perspective{50}};
   Camera flat{"flat", {0, 0, 9}, {0, 0, 0}, {0, 1, 0}, Orthographic{9}};

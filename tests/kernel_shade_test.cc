@@ -75,6 +75,8 @@ void Fill(SurfaceStream<Real>& stream, const std::vector<Surface<Real>>& surface
     out.position_x[i] = s.position.x, out.position_y[i] = s.position.y,
     out.position_z[i] = s.position.z;
     out.normal_x[i] = s.normal.x, out.normal_y[i] = s.normal.y, out.normal_z[i] = s.normal.z;
+    out.face_x[i] = s.face.x, out.face_y[i] = s.face.y, out.face_z[i] = s.face.z;
+    out.tint_r[i] = s.tint.x, out.tint_g[i] = s.tint.y, out.tint_b[i] = s.tint.z;
     out.direction_x[i] = s.direction.x, out.direction_y[i] = s.direction.y;
     out.direction_z[i] = s.direction.z;
     out.u[i] = s.u, out.v[i] = s.v, out.offset[i] = s.offset, out.source[i] = s.source;
@@ -82,8 +84,11 @@ void Fill(SurfaceStream<Real>& stream, const std::vector<Surface<Real>>& surface
   }
 }
 
+// Surfaces as a material with these needs may meet them: with faces and tints of their own where
+// it asks for them.
 template <typename Real>
-std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count) {
+std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count,
+                                          std::uint32_t needs) {
   std::vector<Surface<Real>> surfaces;
   while (surfaces.size() < count) {
     Surface<Real> s;
@@ -93,6 +98,16 @@ std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count) {
     s.normal = RandomUnit(random).To<Real>();
     if (scalar::Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
     if (random() % 8 == 0) s.normal = -s.direction;
+    s.face = s.normal;
+    if ((needs & kNeedsNormals) && random() % 4 != 0) {
+      s.face = RandomUnit(random).To<Real>();
+      if (scalar::Dot(s.face, s.direction) > 0) s.face = -s.face;
+      if (scalar::Dot(s.face, s.normal) < 0) s.normal = -s.normal;
+    }
+    if (needs & kNeedsTint) {
+      const Vec3d tint = UniformPoint(random, 0, 1);
+      s.tint = Vec3<double>{tint.x, tint.y, tint.z}.To<Real>();
+    }
     s.u = static_cast<Real>(Uniform(random, 0, 1));
     s.v = static_cast<Real>(random() % 8 == 0 ? 0.5 : Uniform(random, 0, 1));
     s.offset = static_cast<Real>(Uniform(random, 0, 1e-5));
@@ -111,7 +126,7 @@ MaterialData<Real> RandomMaterial(Random& random) {
   m.kind = random() % 2 ? BaseColour::kChecker : BaseColour::kConstant;
   const bool transmits = random() % 2, reflects = random() % 2;
   for (int i = 0; i < 3; ++i) {
-    m.even[i] = real(0, 1), m.ambient[i] = real(0, 0.5);
+    m.even[i] = real(0, 1), m.ambient[i] = real(0, 0.5), m.emission[i] = real(0, 0.1);
     m.odd[i] = m.kind == BaseColour::kChecker ? real(0, 1) : m.even[i];
     m.reflect[i] = reflects ? real(0, 1) : Real(0);
     m.transmit[i] = transmits ? real(0, 1) : Real(0);
@@ -140,6 +155,13 @@ LightData<Real> RandomLight(Random& random, LightKind kind) {
   }
   if (kind == LightKind::kDirectional || light.falloff[2] == 0) light.falloff[0] = 1;
   light.casts_shadows = 1;
+  if (kind != LightKind::kDirectional && random() % 2) {
+    const auto axis = RandomUnit(random).To<Real>();
+    light.is_spot = 1;
+    for (int i = 0; i < 3; ++i) light.axis[i] = axis[i];
+    light.cone_scale = static_cast<Real>(Uniform(random, 1, 4));
+    light.cone_offset = static_cast<Real>(Uniform(random, -2, 1));
+  }
   return light;
 }
 
@@ -180,7 +202,10 @@ TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
 TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
   ForEachTarget([](const std::string&) {
     Random random(4);
-    const CompiledScene<Real> scene = CompileScene<Real>(RandomScene(random, 24));
+    Scene described = RandomScene(random, 24);
+    described.materials[0].base_colour = Checker{};
+    described.objects.push_back({"mesh", RandomMesh(random, 12), 0});
+    const CompiledScene<Real> scene = CompileScene<Real>(described);
     const auto geometry = scene.geometry();
     for (const Shape shape : {Shape::kSphere, Shape::kTriangle}) {
       for (const std::uint32_t count : kCounts) {
@@ -222,6 +247,10 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
           REQUIRE(SameBits(want.normal, got.normal_x[i], got.normal_y[i], got.normal_z[i]));
           REQUIRE(
               SameBits(want.direction, got.direction_x[i], got.direction_y[i], got.direction_z[i]));
+          if (shape == Shape::kTriangle) {
+            REQUIRE(SameBits(want.face, got.face_x[i], got.face_y[i], got.face_z[i]));
+            REQUIRE(SameBits(want.tint, got.tint_r[i], got.tint_g[i], got.tint_b[i]));
+          }
           REQUIRE(SameBits(want.u, got.u[i]));
           REQUIRE(SameBits(want.v, got.v[i]));
           REQUIRE(SameBits(want.offset, got.offset[i]));
@@ -240,7 +269,7 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
       const std::uint32_t count = kCounts[round % 14];
       const LightData<Real> light = RandomLight<Real>(random, kLightKinds[round % 3]);
       const MaterialData<Real> material = RandomMaterial<Real>(random);
-      const auto want = RandomSurfaces<Real>(random, count);
+      const auto want = RandomSurfaces<Real>(random, count, material.needs);
       SurfaceStream<Real> surfaces;
       Fill(surfaces, want);
       ColourStream<Real> colours;
@@ -261,12 +290,12 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
 
       std::uint32_t ray = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
-        const auto base = scalar::BaseColourAt(material, want[i]);
+        const auto base = scalar::BaseColourAt<Real>(material, {}, want[i]);
         const bool shows = scalar::HasLocalLight(material, want[i]);
         Vec3<Real> colour{0, 0, 0};
         if (shows) colour = scalar::AmbientLight(material, base);
         const auto incidence = scalar::IncidenceOf(light, want[i]);
-        if (shows && incidence.n_dot_l > 0) {
+        if (shows && incidence.reaches) {
           REQUIRE(ray < shadows);
           const Ray<Real> shadow = scalar::ShadowRay(light, want[i], incidence);
           const auto got = rays.view();
@@ -309,7 +338,7 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
     for (int round = 0; round < 60; ++round) {
       const std::uint32_t count = kCounts[round % 14];
       const MaterialData<Real> material = RandomMaterial<Real>(random);
-      const auto surfaces = RandomSurfaces<Real>(random, count);
+      const auto surfaces = RandomSurfaces<Real>(random, count, material.needs);
       SurfaceStream<Real> stream;
       Fill(stream, surfaces);
       PathStream<Real> parents, reflected_paths, refracted_paths;

@@ -231,6 +231,7 @@ void PutSurface(const SurfaceOutput<Real>& out, std::uint32_t i, Vec3<float> nor
                 Vec3<float> direction, std::uint32_t source) {
   const auto n = normal.To<Real>(), d = direction.To<Real>();
   out.normal_x[i] = n.x, out.normal_y[i] = n.y, out.normal_z[i] = n.z;
+  out.face_x[i] = n.x, out.face_y[i] = n.y, out.face_z[i] = n.z;
   out.direction_x[i] = d.x, out.direction_y[i] = d.y, out.direction_z[i] = d.z;
   out.position_x[i] = out.position_y[i] = out.position_z[i] = 0;
   out.u[i] = out.v[i] = out.offset[i] = 0;

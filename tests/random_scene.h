@@ -58,6 +58,23 @@ inline Scene RandomScene(Random& random, int count) {
   return scene;
 }
 
+// Triangles with normals, some of them 0, some on the other side, with colours and coordinates.
+inline Mesh RandomMesh(Random& random, int triangles) {
+  Mesh mesh;
+  for (int i = 0; i < 3 * triangles; ++i) {
+    mesh.positions.push_back(UniformPoint(random, -4, 4));
+    mesh.normals.push_back(UniformPoint(random, -2, 2));
+    mesh.colours.push_back(UniformPoint(random, 0, 1));
+    mesh.uv.push_back(glm::vec2(UniformPoint(random, -2, 2)));
+  }
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(triangles); ++i) {
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    // Every fourth is as flat as one without normals.
+    for (std::uint32_t k = 0; k < 3 && i % 4 == 0; ++k) mesh.normals[3 * i + k] = glm::vec3(0);
+  }
+  return mesh;
+}
+
 // A ray of any kind: mostly sound, some axis-parallel, some with components that no hit may come
 // from.
 template <typename Real>

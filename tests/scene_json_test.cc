@@ -341,7 +341,7 @@ TEST_CASE("every mistake is named, with its line and path") {
       {Shape(R"("sphere": {"center": [0, 0, 2e30], "radius": 1})"),
        "f:1: /objects/0/sphere/center/2: expected a number in [-1e30, 1e30], found 2e+30"},
       {Shape(R"("name": "x")"),
-       "f:1: /objects/0: missing key; give one of \"sphere\", \"quad\", \"triangle\""},
+       "f:1: /objects/0: missing key; give one of \"sphere\", \"quad\", \"triangle\", \"mesh\", \"include\""},
       {Shape(R"("quad": {}, "sphere": {"center": [0, 0, 0], "radius": 1})"),
        "f:1: /objects/0/sphere: conflicts with \"quad\"; give one of \"sphere\", \"quad\", "
        "\"triangle\""},
@@ -379,7 +379,7 @@ TEST_CASE("every mistake is named, with its line and path") {
 
       // Lights.
       {Light(R"("intensity": 1)"),
-       "f:1: /lights/0: missing key; give one of \"point\", \"directional\""},
+       "f:1: /lights/0: missing key; give one of \"point\", \"spot\", \"directional\""},
       {Light(R"("point": {"position": [0, 0, 0]})"),
        "f:1: /lights/0: missing key; give one of \"E0\", \"intensity\""},
       {Light(R"("point": {"position": [0, 0, 0]}, "e0": 1)"),

@@ -33,7 +33,7 @@ bool IsBlack(Vec3<float> c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 Surface<float> Floor(Vec3<float> position = {0, 0, 0}) {
   Surface<float> surface;
   surface.position = position;
-  surface.normal = {0, 1, 0};
+  surface.normal = surface.face = {0, 1, 0};
   surface.direction = {0, -1, 0};
   surface.offset = 1e-6f;
   surface.source = 0;
@@ -53,7 +53,7 @@ LightData<float> PointLightAt(Vec3<float> at, float kc, float kl, float kq) {
 
 Vec3<float> Lit(const LightData<float>& light, const MaterialData<float>& material,
                 const Surface<float>& surface) {
-  return scalar::LitBy(light, material, surface, scalar::BaseColourAt(material, surface),
+  return scalar::LitBy(light, material, surface, scalar::BaseColourAt(material, {}, surface),
                        scalar::IncidenceOf(light, surface));
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("a checker is odd where the sum of its cells is") {
     checker.cells[0] = across, checker.cells[1] = along;
     Surface<float> surface = Floor();
     surface.u = u, surface.v = v;
-    return scalar::BaseColourAt(checker, surface).x == 1;
+    return scalar::BaseColourAt(checker, {}, surface).x == 1;
   };
   CHECK_FALSE(is_odd(0.1f, 0.1f, 8, 8));
   CHECK(is_odd(0.2f, 0.1f, 8, 8));
@@ -128,7 +128,7 @@ TEST_CASE("the highlight is (n.h)^shininess in the light's colour") {
     const double powers[] = {0, 1, 11.1434, 25, 200, 1e4};
     const double shininess = powers[i % 6];
     Surface<float> surface = Floor();
-    surface.normal = n.To<float>(), surface.direction = -eye.To<float>();
+    surface.normal = surface.face = n.To<float>(), surface.direction = -eye.To<float>();
     MaterialData<float> material = White(0.25f, 0.75f, static_cast<float>(shininess));
     material.even[1] = 0.5f, material.even[2] = 0;
     LightData<float> light = PointLightAt({0, 0, 0}, 1, 0, 0);
@@ -167,7 +167,7 @@ TEST_CASE("ambient light is ka times the base colour, with no light at all") {
   MaterialData<float> material = White(1, 1, 10);
   material.even[1] = 0.5f, material.even[2] = 0.25f;
   material.ambient[0] = 0.1f, material.ambient[1] = 0.2f, material.ambient[2] = 0.5f;
-  const auto colour = scalar::AmbientLight(material, scalar::BaseColourAt(material, Floor()));
+  const auto colour = scalar::AmbientLight(material, scalar::BaseColourAt(material, {}, Floor()));
   CHECK(colour.x == 0.1f);
   CHECK(colour.y == 0.1f);
   CHECK(colour.z == 0.125f);
@@ -304,7 +304,7 @@ MaterialData<float> Glass(float ior) {
 // A surface met by a ray of direction `d`, entering a body or leaving it.
 Surface<float> Interface(Vec3<double> n, Vec3<double> d, bool is_inside) {
   Surface<float> surface = Floor();
-  surface.normal = n.To<float>(), surface.direction = d.To<float>();
+  surface.normal = surface.face = n.To<float>(), surface.direction = d.To<float>();
   surface.source = is_inside ? kInsideBit : 0;
   return surface;
 }

@@ -18,7 +18,6 @@
 #include "src/core/atomic_file.h"
 #include "src/core/rank_statistics.h"
 #include "src/core/version.h"
-#include "src/formats/scene_json.h"
 #include "src/render/render.h"
 
 namespace sheaf {
@@ -246,6 +245,7 @@ Verdict JudgeRow(const Json& row, const Json& now, const Json& before, bool abso
 CLI::App* AddBenchCommand(CLI::App& app, BenchRequest& request) {
   CLI::App* bench = app.add_subcommand("bench", "Time a scene on every SIMD target");
   bench->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
+  AddSceneOptions(*bench, request.options);
   bench->add_option("--camera", request.camera, "The camera; the scene's first if absent")
       ->option_text("NAME");
   AddSize(*bench, request.size);
@@ -278,7 +278,7 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
       rows.push_back({target, threads, 1, 0, {}, {}});
     }
   }
-  const Result<Scene> scene = ReadSceneJson(request.scene);
+  const Result<Scene> scene = OpenScene(request.scene, request.options);
   if (!scene) return scene.error();
   CameraChoice choice;
   if (!request.camera.empty()) choice.cameras = {request.camera};

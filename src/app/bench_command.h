@@ -8,6 +8,7 @@
 
 #include "src/app/choose.h"
 #include "src/app/exit_code.h"
+#include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
 
 namespace CLI {
@@ -18,6 +19,7 @@ namespace sheaf {
 
 // The command line as it was given.
 struct BenchRequest {
+  SceneOptions options;
   std::string scene;
   std::string camera;  // empty: the scene's first
   std::optional<PixelSize> size;

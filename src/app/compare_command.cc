@@ -15,7 +15,6 @@
 #include "src/app/standard_output.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
-#include "src/formats/scene_json.h"
 #include "src/render/object_at.h"
 #include "src/render/picture_metrics.h"
 #include "src/render/render.h"
@@ -108,7 +107,7 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
     if (const Status known = ChooseTarget(renderer.target); !known) return known.error();
   }
   const std::string& path = request.inputs.front();
-  const Result<Scene> read = ReadSceneJson(path);
+  const Result<Scene> read = OpenScene(path, request.options);
   if (!read) return read.error();
   const Scene& scene = read.value();
   const auto cameras = ChooseCameras(request.choice, path, scene);
@@ -199,6 +198,11 @@ Result<Film> ReadDisplayValues(const std::string& path, Transfer transfer) {
   return film;
 }
 
+// A file of bytes holds what a display shows, from 0 to 1: beside it, light counts so far.
+void ClampToDisplay(Film& film) {
+  for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
+}
+
 // The first limit that is broken, or nothing.
 std::string BrokenLimit(const PictureMetrics& metrics,
                         const std::vector<std::pair<std::string, double>>& limits) {
@@ -224,9 +228,14 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
   std::string text;
   for (std::size_t i = 1; i < request.inputs.size(); ++i) {
     const std::string& path = request.inputs[i];
-    const Result<Film> test = ReadDisplayValues(path, transfer);
+    Result<Film> test = ReadDisplayValues(path, transfer);
     if (!test) return test.error();
-    const Film &a = reference.value(), &b = test.value();
+    Film a = reference.value();
+    Film& b = test.value();
+    if (HoldsFloats(path) != HoldsFloats(request.inputs.front())) {
+      ClampToDisplay(a);
+      ClampToDisplay(b);
+    }
     if (a.width != b.width || a.height != b.height) {
       return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", path, b.width, b.height,
                                request.inputs.front(), a.width, a.height));
@@ -261,6 +270,7 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
       ->required()
       ->option_text("...");
   AddCameraChoice(*compare, request.choice);
+  AddSceneOptions(*compare, request.options);
   AddSize(*compare, request.size);
   AddInteger(*compare, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddTargets(*compare, request.targets,
@@ -283,7 +293,7 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
 Result<ExitCode> RunCompare(const CompareRequest& request) {
   if (CheckPicturePath(request.inputs.front())) return ComparePictures(request);
   if (request.inputs.size() > 1) {
-    return Usage(fmt::format("{}: neither a .png nor a .pfm, and of scenes there can be only one",
+    return Usage(fmt::format("{}: no .png, .pfm or .exr, and of scenes there can be only one",
                              request.inputs.front()));
   }
   return CompareRenderings(request);

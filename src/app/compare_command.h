@@ -9,6 +9,7 @@
 
 #include "src/app/choose.h"
 #include "src/app/exit_code.h"
+#include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
 
 namespace CLI {
@@ -19,6 +20,7 @@ namespace sheaf {
 
 // The command line as it was given.
 struct CompareRequest {
+  SceneOptions options;
   std::vector<std::string> inputs;  // one scene, or pictures of which the first is the reference
   // Of a scene:
   CameraChoice choice;

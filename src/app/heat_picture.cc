@@ -12,15 +12,6 @@ namespace {
 
 using Heat = std::array<float, 3>;
 
-Heat HeatOf(const TileCost& cost) {
-  const double pixels =
-      static_cast<double>(cost.tile.width()) * static_cast<double>(cost.tile.height());
-  const double lanes = static_cast<double>(std::max<std::uint64_t>(cost.lane_use.lanes, 1));
-  return {static_cast<float>(1e6 * cost.seconds / pixels),
-          static_cast<float>(static_cast<double>(cost.lane_use.live) / lanes),
-          static_cast<float>(static_cast<double>(cost.rays) / pixels)};
-}
-
 // The value that a hundredth of the tiles exceed: a tile that another process interrupted would
 // leave all others dark.
 float UsualMost(const std::vector<TileCost>& tiles, std::size_t channel) {
@@ -32,11 +23,6 @@ float UsualMost(const std::vector<TileCost>& tiles, std::size_t channel) {
 }
 
 }  // namespace
-
-std::string HeatPath(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return path.substr(0, dot) + ".heat" + path.substr(dot);
-}
 
 Status WriteHeatPicture(const RenderOptions& options, const RenderStats& stats,
                         const std::string& path) {

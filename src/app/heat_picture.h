@@ -9,9 +9,6 @@
 
 namespace sheaf {
 
-// "out/front.png" becomes "out/front.heat.png". `path` has an ending that CheckPicturePath knows.
-std::string HeatPath(const std::string& path);
-
 // Every pixel shows its tile: microseconds a pixel in red, the share of live lanes in green, rays a
 // pixel in blue. A .pfm holds the numbers; elsewhere red and blue are parts of what one tile in a
 // hundred exceeds. `stats` has the tiles of a whole frame of `options`.

@@ -15,7 +15,6 @@
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/core/version.h"
-#include "src/formats/scene_json.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -180,6 +179,7 @@ std::string SceneText(const Json& scene) {
 CLI::App* AddInfoCommand(CLI::App& app, InfoRequest& request) {
   CLI::App* info = app.add_subcommand("info", "Show the machine's SIMD targets, or a scene");
   info->add_option("SCENE", request.scene, "A scene file to describe")->option_text(" ");
+  AddSceneOptions(*info, request.options);
   info->add_flag("--json", request.json, "The same as JSON");
   return info;
 }
@@ -187,7 +187,7 @@ CLI::App* AddInfoCommand(CLI::App& app, InfoRequest& request) {
 Status RunInfo(const InfoRequest& request) {
   Json json = MachineJson();
   if (!request.scene.empty()) {
-    const Result<Scene> scene = ReadSceneJson(request.scene);
+    const Result<Scene> scene = OpenScene(request.scene, request.options);
     if (!scene) return scene.error();
     json["scene"] = SceneJson(request.scene, scene.value());
   }

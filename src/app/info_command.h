@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "src/app/open_scene.h"
 #include "src/core/error.h"
 
 namespace CLI {
@@ -13,6 +14,7 @@ class App;
 namespace sheaf {
 
 struct InfoRequest {
+  SceneOptions options;
   std::string scene;  // empty: none
   bool json = false;
 };

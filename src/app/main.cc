@@ -12,9 +12,12 @@
 #include <vector>
 
 #include "src/app/bench_command.h"
+#include "src/app/check_command.h"
 #include "src/app/compare_command.h"
+#include "src/app/convert_command.h"
 #include "src/app/exit_code.h"
 #include "src/app/info_command.h"
+#include "src/app/merge_command.h"
 #include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
 #include "src/app/standard_output.h"
@@ -31,6 +34,11 @@ Examples:
   sheaf render scene.json -o picture.png
   sheaf render scene.json --views seven -o 'out/{camera}.png'
   sheaf render scene.json --camera front --size 1280x960 --json -o front.pfm
+  sheaf render model.glb -o model.exr --aov depth,normal
+  sheaf render scene.json --tile 2/8 -o part2.png
+  sheaf merge part1.png part2.png ... -o whole.png
+  sheaf convert scene.nff -o scene.json
+  sheaf check scene.json
   sheaf compare scene.json --targets all --threads 1,2
   sheaf compare expected.png found.png --fail psnr=40
   sheaf bench scene.json --baseline before.json
@@ -119,14 +127,20 @@ ExitCode Main(int argc, char** argv) {
   app.require_subcommand(1);
   RenderRequest render_request;
   BenchRequest bench_request;
+  CheckRequest check_request;
   CompareRequest compare_request;
+  ConvertRequest convert_request;
   InfoRequest info_request;
+  MergeRequest merge_request;
   ParetoRequest pareto_request;
   StressRequest stress_request;
   const CLI::App* render = AddRenderCommand(app, render_request);
   const CLI::App* bench = AddBenchCommand(app, bench_request);
   const CLI::App* compare = AddCompareCommand(app, compare_request);
   const CLI::App* info = AddInfoCommand(app, info_request);
+  const CLI::App* convert = AddConvertCommand(app, convert_request);
+  const CLI::App* merge = AddMergeCommand(app, merge_request);
+  const CLI::App* check = AddCheckCommand(app, check_request);
   const CLI::App* pareto = AddParetoCommand(app, pareto_request);
   const CLI::App* stress = AddStressCommand(app, stress_request);
   if (argc < 2) {
@@ -142,6 +156,9 @@ ExitCode Main(int argc, char** argv) {
   if (bench->parsed()) return ToExitCode(RunBench(bench_request));
   if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
   if (info->parsed()) return ToExitCode(RunInfo(info_request));
+  if (convert->parsed()) return ToExitCode(RunConvert(convert_request));
+  if (merge->parsed()) return ToExitCode(RunMerge(merge_request));
+  if (check->parsed()) return ToExitCode(RunCheck(check_request));
   if (pareto->parsed()) return ToExitCode(RunPareto(pareto_request));
   if (stress->parsed()) return ToExitCode(RunStress(stress_request));
   return ExitCode::kInternal;

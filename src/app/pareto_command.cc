@@ -19,7 +19,6 @@
 #include "src/core/rank_statistics.h"
 #include "src/formats/pov_ray.h"
 #include "src/formats/printable.h"
-#include "src/formats/scene_json.h"
 #include "src/render/picture_metrics.h"
 #include "src/render/render.h"
 
@@ -221,6 +220,7 @@ CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
   CLI::App* pareto =
       app.add_subcommand("pareto", "Chart run time against error over a scene's settings");
   pareto->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
+  AddSceneOptions(*pareto, request.options);
   AddCameraChoice(*pareto, request.choice);
   pareto->add_option("-o,--output", request.output, "The folder for the report (needed)")
       ->required()
@@ -242,7 +242,7 @@ CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
 }
 
 Status RunPareto(const ParetoRequest& request) {
-  const Result<Scene> scene = ReadSceneJson(request.scene);
+  const Result<Scene> scene = OpenScene(request.scene, request.options);
   if (!scene) return scene.error();
   const auto cameras = ChooseCameras(request.choice, request.scene, scene.value());
   if (!cameras) return cameras.error();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/app/choose.h"
+#include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
 #include "src/core/error.h"
 
@@ -18,6 +19,7 @@ namespace sheaf {
 
 // The command line as it was given.
 struct ParetoRequest {
+  SceneOptions options;
   std::string scene;
   CameraChoice choice;
   std::optional<PixelSize> size;

@@ -11,13 +11,13 @@
 #include "src/app/choose.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
+#include "src/app/layer_picture.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
-#include "src/formats/scene_json.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -27,7 +27,7 @@ namespace {
 struct Frame {
   const Camera* camera;
   std::string path;
-  std::string heat_path;  // empty: none
+  std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
 };
 
 // What is wrong without a look at the scene: the command line first, then the places to write to.
@@ -37,6 +37,12 @@ Status CheckRequest(const RenderRequest& request) {
         fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
   }
   if (const Status known = CheckPicturePath(request.output); !known) return known;
+  if (request.bits) {
+    if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
+  }
+  if (request.crop && request.tile.parts > 0) {
+    return Usage("--tile, --crop: a part of the picture is one or the other");
+  }
   if (const Status chosen = ChooseTarget(request.target); !chosen) return chosen;
 
   // Where the field stands in the folder's name, PlanFrames checks each folder.
@@ -65,9 +71,10 @@ Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& 
   for (const Frame& frame : frames) {
     if (IsSameFile(frame.path, request.scene)) return clash("-o", frame.path);
     if (IsSameFile(frame.path, request.statistics)) return clash("--json", request.statistics);
-    if (frame.heat_path.empty()) continue;
-    for (const std::string& other : {request.scene, request.statistics}) {
-      if (IsSameFile(frame.heat_path, other)) return clash("--aov heat", frame.heat_path);
+    for (const auto& [layer, path] : frame.beside) {
+      for (const std::string& other : {request.scene, request.statistics}) {
+        if (IsSameFile(path, other)) return clash("--aov", path);
+      }
     }
   }
   return Done{};
@@ -87,11 +94,15 @@ Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene&
     const Result<std::string> path = ExpandPath(request.output, camera->name);
     if (!path) return path.error();
     if (const Status writable = CheckWritable(path.value()); !writable) return writable.error();
-    const std::string heat_path = request.layers.empty() ? "" : HeatPath(path.value());
-    if (!heat_path.empty()) {
-      if (const Status writable = CheckWritable(heat_path); !writable) return writable.error();
+    Frame frame{camera, path.value(), {}};
+    for (int i = 0; i < kLayerCount && !HoldsLayers(path.value()); ++i) {
+      const Layer layer = static_cast<Layer>(i);
+      if (!request.layers.has(layer)) continue;
+      frame.beside.emplace_back(layer, LayerPath(path.value(), layer));
+      const Status writable = CheckWritable(frame.beside.back().second);
+      if (!writable) return writable.error();
     }
-    frames.push_back({camera, path.value(), heat_path});
+    frames.push_back(std::move(frame));
   }
   return frames;
 }
@@ -108,8 +119,20 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
     return Usage("--precision fast: needs a SIMD target, not --target scalar");
   }
   options.threads = request.threads.value_or(options.threads);
-  options.tile_size = request.tile_size.value_or(options.tile_size);
-  options.tile_costs = request.layers.empty() ? TileCosts::kOff : TileCosts::kOn;
+  options.tile_size = request.tile.size.value_or(options.tile_size);
+  options.layers = request.layers;
+  options.tile_costs = request.layers.has(Layer::kHeat) ? TileCosts::kOn : TileCosts::kOff;
+  if (const auto [size, part, parts] = request.tile; parts > 0) {
+    if (parts > options.height) {
+      return Usage(
+          fmt::format("--tile {}/{}: the picture has {} rows", part, parts, options.height));
+    }
+    // Rows as even as can be, whatever the number of parts.
+    const auto row = [&](int i) {
+      return static_cast<int>(static_cast<std::int64_t>(options.height) * i / parts);
+    };
+    options.crop = PixelRect{0, row(part - 1), options.width, row(part)};
+  }
   options.timing = request.statistics.empty() ? Timing::kOff : Timing::kOn;
   if (options.crop && (options.crop->x1 > options.width || options.crop->y1 > options.height)) {
     return Usage(fmt::format("--crop: {},{},{},{} is not inside the picture of {}x{}",
@@ -133,14 +156,79 @@ std::uint64_t PixelCount(const PixelSize& size) {
   return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
-Result<FrameRecord> RenderFrame(const Scene& scene, const Frame& frame,
-                                const RenderOptions& options, ProgressStyle style,
-                                std::string label) {
+std::string SettingsText(const RenderOptions& options) {
+  return fmt::format("{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}",
+                     options.width, options.height, options.samples, options.max_depth,
+                     PrecisionName(options.precision), options.min_weight,
+                     options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "");
+}
+
+// The picture of a frame, and its layers where they have files of their own.
+class FrameWriter {
+ public:
+  static Result<FrameWriter> Create(const Scene& scene, const Frame& frame,
+                                    const RenderOptions& options, std::optional<int> bits,
+                                    const std::string& scene_path) {
+    PictureSpec spec = WholePicture(options.width, options.height, scene.settings.transfer);
+    if (options.crop) spec.window = *options.crop;
+    spec.bits = bits.value_or(0);
+    spec.metadata = {
+        {"Scene", scene_path}, {"Camera", frame.camera->name}, {"Settings", SettingsText(options)}};
+    if (HoldsLayers(frame.path)) spec.layers = options.layers;
+    Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
+    if (!picture) return picture.error();
+    FrameWriter writer(std::move(picture).value());
+    writer.far_ = FarthestDepth(scene, *frame.camera);
+    for (const auto& [layer, path] : frame.beside) {
+      if (layer == Layer::kHeat) continue;  // known when all tiles are
+      PictureSpec beside = spec;
+      if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
+      Result<PictureWriter> created = PictureWriter::Create(path, beside);
+      if (!created) return created.error();
+      const LayerLook look = HoldsFloats(path) ? LayerLook::kNumbers : LayerLook::kDisplay;
+      writer.beside_.push_back({layer, look, std::move(created).value()});
+    }
+    return writer;
+  }
+
+  Status WriteRows(const Film& rows) {
+    Status status = picture_.WriteRows(rows);
+    for (Beside& beside : beside_) {
+      if (status) {
+        status = beside.writer.WriteRows(ShowLayer(rows, beside.layer, beside.look, far_));
+      }
+    }
+    return status;
+  }
+
+  Status Finish() {
+    Status status = picture_.Finish();
+    for (Beside& beside : beside_) {
+      if (status) status = beside.writer.Finish();
+    }
+    return status;
+  }
+
+ private:
+  struct Beside {
+    Layer layer;
+    LayerLook look;
+    PictureWriter writer;
+  };
+  explicit FrameWriter(PictureWriter picture) : picture_(std::move(picture)) {}
+
+  PictureWriter picture_;
+  std::vector<Beside> beside_;
+  double far_ = 1;
+};
+
+Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_path,
+                                const Frame& frame, const RenderOptions& options,
+                                std::optional<int> bits, ProgressStyle style, std::string label) {
   const PixelSize size = PictureSize(options);
   FrameRecord record{frame.camera->name, frame.path, options, {}};
   // Before the first ray: what cannot be written costs no rendering.
-  Result<PictureWriter> writer =
-      PictureWriter::Create(frame.path, size.width, size.height, scene.settings.transfer);
+  Result<FrameWriter> writer = FrameWriter::Create(scene, frame, options, bits, scene_path);
   if (!writer) return writer.error();
   FrameWatch watch(style, std::move(label), options, PixelCount(size));
   const RowSink write = [&](const Film& rows) { return writer.value().WriteRows(rows); };
@@ -154,8 +242,9 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const Frame& frame,
   if (!rendered) return rendered.error();
   watch.Finish(record.stats);
   if (const Status written = writer.value().Finish(); !written) return written.error();
-  if (!frame.heat_path.empty()) {
-    const Status written = WriteHeatPicture(options, record.stats, frame.heat_path);
+  for (const auto& [layer, path] : frame.beside) {
+    if (layer != Layer::kHeat) continue;
+    const Status written = WriteHeatPicture(options, record.stats, path);
     if (!written) return written.error();
   }
   return record;
@@ -166,11 +255,28 @@ Status WriteStatistics(const std::string& destination, const std::string& json) 
   return destination == "-" ? WriteStandardOutput(json) : WriteFileWhole(destination, json);
 }
 
+// "32" or "2/8".
+std::optional<TileChoice> ParseTile(const std::string& text) {
+  TileChoice tile;
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) {
+    tile.size = ParseInteger(text, 1, kMaxTileSize);
+    return tile.size ? std::optional(tile) : std::nullopt;
+  }
+  const auto parts = ParseInteger(text.substr(slash + 1), 1, kMaxImageSide);
+  const auto part = ParseInteger(text.substr(0, slash), 1, parts.value_or(1));
+  if (!parts || !part) return std::nullopt;
+  tile.part = *part;
+  tile.parts = *parts;
+  return tile;
+}
+
 }  // namespace
 
 CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   CLI::App* render = app.add_subcommand("render", "Render a scene into pictures");
   render->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
+  AddSceneOptions(*render, request.options);
   AddCameraChoice(*render, request.choice);
   render
       ->add_option("-o,--output", request.output,
@@ -191,14 +297,17 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   render->add_option("--target", request.target, "SIMD target; sheaf info lists the usable ones")
       ->option_text("auto|scalar|NAME");
   AddPrecision(*render, request.precision);
-  AddParsed(*render, "--aov", request.layers, "heat", "a layer; there is heat",
-            "Beside the picture PATH one of costs: time, live lanes and rays of each tile",
-            [](const std::string& text) {
-              return text == "heat" ? std::optional(std::vector{text}) : std::nullopt;
-            });
+  AddParsed(*render, "--aov", request.layers, "LAYER[,LAYER]",
+            "a list of depth, normal, albedo, id, heat",
+            "Layers: depth, normal, albedo, id, heat; in .exr, else in files beside the picture",
+            &ParseLayers);
+  AddInteger(*render, "--bits", request.bits, 8, 32,
+             "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
   AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
-  AddInteger(*render, "--tile", request.tile_size, 1, kMaxTileSize,
-             "Pixels a side of a tile; changes no picture");
+  AddParsed(*render, "--tile", request.tile, "N|I/N",
+            fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),
+            "Pixels a side of a tile, which change no picture; I/N: render part I of N alone",
+            &ParseTile);
   render->add_option("--progress", request.progress, "What stderr shows meanwhile")
       ->option_text("auto|plain|none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
@@ -210,7 +319,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
 Status RunRender(const RenderRequest& request) {
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckRequest(request); !sound) return sound;
-  const Result<Scene> scene = ReadSceneJson(request.scene);
+  const Result<Scene> scene = OpenScene(request.scene, request.options);
   if (!scene) return scene.error();
   const Result<RenderOptions> options = MergeOptions(request, scene.value().settings);
   if (!options) return options.error();
@@ -225,11 +334,14 @@ Status RunRender(const RenderRequest& request) {
   for (const Frame& frame : frames.value()) {
     std::string label = Printable(frame.camera->name);
     if (count > 1) label += fmt::format(" {}/{}", records.size() + 1, count);
-    Result<FrameRecord> record = RenderFrame(scene.value(), frame, options.value(), style, label);
+    Result<FrameRecord> record = RenderFrame(scene.value(), request.scene, frame, options.value(),
+                                             request.bits, style, label);
     if (!record) return record.error();
     // Not fmt::print: it throws where stderr is gone, which is no reason to stop.
-    for (const std::string& path : {frame.path, frame.heat_path}) {
-      if (!request.quiet && !path.empty()) std::fprintf(stderr, "wrote %s\n", path.c_str());
+    std::vector<std::string> paths = {frame.path};
+    for (const auto& [layer, path] : frame.beside) paths.push_back(path);
+    for (const std::string& path : paths) {
+      if (!request.quiet) std::fprintf(stderr, "wrote %s\n", path.c_str());
     }
     records.push_back(std::move(record).value());
   }

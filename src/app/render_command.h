@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/app/choose.h"
+#include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
 #include "src/core/error.h"
 #include "src/render/render.h"
@@ -17,8 +18,15 @@ class App;
 
 namespace sheaf {
 
+// What --tile says: pixels a side of a tile, or which of how many parts of the picture.
+struct TileChoice {
+  std::optional<int> size;
+  int part = 0, parts = 0;  // 0 parts: the whole picture
+};
+
 // The command line as it was given. What is absent comes from the scene.
 struct RenderRequest {
+  SceneOptions options;
   std::string scene;
   CameraChoice choice;
   std::string output;
@@ -27,9 +35,10 @@ struct RenderRequest {
   std::optional<double> contrast, min_weight;
   std::string target = "auto";
   std::string precision = "strict";
-  std::optional<int> threads, tile_size;
+  std::optional<int> threads, bits;
+  TileChoice tile;
   std::optional<PixelRect> crop;
-  std::vector<std::string> layers;  // of --aov
+  Layers layers;  // of --aov
   std::string progress = "auto";
   bool quiet = false;
   std::string statistics;  // empty: none; "-": stdout; else a file

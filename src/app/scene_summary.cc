@@ -28,6 +28,11 @@ class ShapeCounter {
     for (const Vec3d& vertex : triangle.vertices) Include(vertex);
   }
 
+  void operator()(const Mesh& mesh) {
+    summary_.triangles += mesh.triangles.size();
+    for (const glm::vec3& vertex : mesh.positions) Include(Vec3d(vertex));
+  }
+
  private:
   void Include(const Vec3d& point) {
     if (!summary_.bounds) summary_.bounds = Bounds{point, point};
@@ -52,6 +57,12 @@ SceneSummary Summarize(const Scene& scene) {
   const auto any_material = [&](auto test) {
     return std::any_of(used.begin(), used.end(), [&](const Material* m) { return test(*m); });
   };
+  const auto any_mesh = [&](auto test) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+      const auto* mesh = std::get_if<Mesh>(&object.shape);
+      return mesh != nullptr && test(*mesh);
+    });
+  };
   const auto any_light = [&](auto test) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), test);
   };
@@ -66,10 +77,20 @@ SceneSummary Summarize(const Scene& scene) {
       {"checker textures", any_material([](const Material& m) {
          return std::holds_alternative<Checker>(m.base_colour);
        })},
+      {"image textures", any_material([](const Material& m) {
+         return std::holds_alternative<Texture>(m.base_colour);
+       })},
+      {"smooth normals", any_mesh([](const Mesh& m) { return !m.normals.empty(); })},
+      {"vertex colours", any_mesh([](const Mesh& m) { return !m.colours.empty(); })},
+      {"emission", any_material([](const Material& m) { return !IsBlack(m.emission); })},
       {"ambient light",
        !IsBlack(ambient_light) && any_material([](const Material& m) { return m.ambient > 0.0; })},
       {"point lights",
        any_light([](const Light& l) { return std::holds_alternative<PointLight>(l.source); })},
+      {"spot lights", any_light([](const Light& l) {
+         const auto* point = std::get_if<PointLight>(&l.source);
+         return point != nullptr && point->cone.has_value();
+       })},
       {"directional lights", any_light([](const Light& l) {
          return std::holds_alternative<DirectionalLight>(l.source);
        })},

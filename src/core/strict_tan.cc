@@ -17,4 +17,10 @@ double StrictTanDegrees(double degrees) {
   return t;
 }
 
+double StrictCosDegrees(double degrees) {
+  if (degrees == 90) return 0;  // quarter turns are exact
+  const double t = StrictTanDegrees(degrees / 2);
+  return (1 - t * t) / (1 + t * t);
+}
+
 }  // namespace sheaf

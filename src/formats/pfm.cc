@@ -4,17 +4,15 @@
 
 #include <bit>
 #include <cassert>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "src/formats/read_file.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -37,20 +35,6 @@ void SwapEachFloat(std::uint8_t* bytes, std::size_t count) {
     bits = SwapBytes(bits);
     std::memcpy(bytes + 4 * i, &bits, 4);
   }
-}
-
-// Grows with what the file really holds, so that no header makes it allocate more.
-Result<std::string> ReadBytes(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file) return Malformed(path, std::strerror(errno));
-  std::string bytes;
-  std::vector<char> block(1 << 16);
-  while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
-    bytes.append(block.data(), count);
-  }
-  if (std::ferror(file.get())) return Malformed(path, std::strerror(errno));
-  return bytes;
 }
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -122,7 +106,7 @@ Status WritePfm(const Film& film, const std::string& path) {
 }
 
 Result<Film> ReadPfm(const std::string& path) {
-  const Result<std::string> bytes = ReadBytes(path);
+  const Result<std::string> bytes = ReadWholeFile(path);
   if (!bytes) return bytes.error();
   std::string_view rest = bytes.value();
 

@@ -39,6 +39,9 @@ Error Failed(const std::string& path, std::string_view what) {
   return {ErrorKind::kInputOutput, fmt::format("{}: {}", path, what)};
 }
 
+// Of the whole picture, in the file of a part.
+constexpr char kSizeKey[] = "sheaf:size";
+
 class PngReader {
  public:
   PngReader()
@@ -49,15 +52,31 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  // Reads up to the pixels and asks for 8-bit RGB. False: see `complaint`.
-  bool ReadHeader(std::FILE* file) {
+  // Reads up to the pixels and asks for RGB, of 8 bits or of 16 where the file has them and
+  // `most_bits` allows. False: see `complaint`.
+  bool ReadHeader(std::FILE* file, int most_bits) {
     if (info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_))) return false;
     png_init_io(png_, file);
     png_set_user_limits(png_, kMaxImageSide, kMaxImageSide);
     png_read_info(png_, info_);
     png_set_expand(png_);
-    png_set_scale_16(png_);
+    bits = png_get_bit_depth(png_, info_) == 16 && most_bits == 16 ? 16 : 8;
+    if (bits == 8) png_set_scale_16(png_);
+    int intent = 0;
+    is_srgb = png_get_sRGB(png_, info_, &intent) != 0;
+    int unit = 0;
+    png_int_32 x = 0, y = 0;
+    if (png_get_oFFs(png_, info_, &x, &y, &unit) && unit == PNG_OFFSET_PIXEL) {
+      offset_x = x, offset_y = y;
+    }
+    png_textp texts = nullptr;
+    const int text_count = png_get_text(png_, info_, &texts, nullptr);
+    for (int i = 0; i < text_count; ++i) {
+      if (std::strcmp(texts[i].key, kSizeKey) == 0) {
+        std::sscanf(texts[i].text, "%dx%d", &full_width, &full_height);
+      }
+    }
     png_set_strip_alpha(png_);
     png_set_gray_to_rgb(png_);
     png_set_interlace_handling(png_);
@@ -76,7 +95,9 @@ class PngReader {
   }
 
   Complaint complaint;
-  int width = 0, height = 0;
+  int width = 0, height = 0, bits = 8;
+  bool is_srgb = false;
+  int offset_x = 0, offset_y = 0, full_width = 0, full_height = 0;
   std::size_t row_bytes = 0;
 
  private:
@@ -89,12 +110,11 @@ class PngReader {
 // Owns libpng's state and the file; libpng keeps pointers into both, so that it never moves.
 class PngWriter::Encoder {
  public:
-  Encoder(AtomicFile file, std::string path, int width, int height)
+  Encoder(AtomicFile file, std::string path, const PictureSpec& spec)
       : path_(std::move(path)),
         file_(std::move(file)),
-        width_(static_cast<png_uint_32>(width)),
-        height_(static_cast<png_uint_32>(height)),
-        rows_left_(height),
+        spec_(spec),
+        rows_left_(spec.window.height()),
         png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, OnError, OnWarning)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
   }
@@ -102,7 +122,14 @@ class PngWriter::Encoder {
   Encoder& operator=(const Encoder&) = delete;
   ~Encoder() { png_destroy_write_struct(&png_, &info_); }
 
-  Status WriteHeader(Transfer transfer) { return StatusOf(EncodeHeader(transfer)); }
+  Status WriteHeader() {
+    texts_ = {{"Software", fmt::format("sheaf {}", kVersion)}};
+    texts_.insert(texts_.end(), spec_.metadata.begin(), spec_.metadata.end());
+    if (!spec_.is_whole()) {
+      texts_.emplace_back(kSizeKey, fmt::format("{}x{}", spec_.full_width, spec_.full_height));
+    }
+    return StatusOf(EncodeHeader());
+  }
 
   Status WriteRow(const std::uint8_t* rgb) {
     assert(rows_left_ > 0);
@@ -118,21 +145,26 @@ class PngWriter::Encoder {
 
  private:
   // False: see `complaint_`, and so for the two below.
-  bool EncodeHeader(Transfer transfer) {
+  bool EncodeHeader() {
     if (info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_write_fn(png_, this, &WriteToFile, nullptr);
-    png_set_IHDR(png_, info_, width_, height_, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (transfer == Transfer::kSrgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
-    char key[] = "Software";
-    char software[64];
-    std::snprintf(software, sizeof(software), "sheaf %s", kVersion);
-    png_text text = {};
-    text.compression = PNG_TEXT_COMPRESSION_NONE;
-    text.key = key;
-    text.text = software;
-    png_set_text(png_, info_, &text, 1);
+    png_set_IHDR(png_, info_, static_cast<png_uint_32>(spec_.window.width()),
+                 static_cast<png_uint_32>(spec_.window.height()), spec_.bits == 16 ? 16 : 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    if (spec_.transfer == Transfer::kSrgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (!spec_.is_whole()) {
+      png_set_oFFs(png_, info_, spec_.window.x0, spec_.window.y0, PNG_OFFSET_PIXEL);
+    }
+    for (std::size_t i = 0; i < texts_.size(); ++i) {
+      // Latin-1 for what is ASCII anyway, UTF-8 for what came from a user.
+      png_text text = {};
+      text.compression = i == 0 ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+      text.key = texts_[i].first.data();
+      text.text = texts_[i].second.data();
+      png_set_text(png_, info_, &text, 1);
+    }
     png_write_info(png_, info_);
     return true;
   }
@@ -166,7 +198,8 @@ class PngWriter::Encoder {
   std::string path_;  // for messages
   AtomicFile file_;
   std::optional<Error> error_;  // the first failed write
-  png_uint_32 width_, height_;
+  PictureSpec spec_;
+  PictureMetadata texts_;
   int rows_left_;
   Complaint complaint_;
   png_structp png_;
@@ -177,12 +210,11 @@ PngWriter::PngWriter(std::unique_ptr<Encoder> encoder) : encoder_(std::move(enco
 PngWriter::PngWriter(PngWriter&&) noexcept = default;
 PngWriter::~PngWriter() = default;
 
-Result<PngWriter> PngWriter::Create(const std::string& path, int width, int height,
-                                    Transfer transfer) {
+Result<PngWriter> PngWriter::Create(const std::string& path, const PictureSpec& spec) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
-  auto encoder = std::make_unique<Encoder>(std::move(file).value(), path, width, height);
-  const Status begun = encoder->WriteHeader(transfer);
+  auto encoder = std::make_unique<Encoder>(std::move(file).value(), path, spec);
+  const Status begun = encoder->WriteHeader();
   if (!begun) return begun.error();
   return PngWriter(std::move(encoder));
 }
@@ -192,7 +224,8 @@ Status PngWriter::WriteRow(const std::uint8_t* rgb) { return encoder_->WriteRow(
 Status PngWriter::Finish() { return encoder_->Finish(); }
 
 Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
-  Result<PngWriter> writer = PngWriter::Create(path, picture.width, picture.height, transfer);
+  Result<PngWriter> writer =
+      PngWriter::Create(path, WholePicture(picture.width, picture.height, transfer));
   if (!writer) return writer.error();
   const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
   for (int y = 0; y < picture.height; ++y) {
@@ -203,15 +236,17 @@ Status WritePng(const Picture8& picture, Transfer transfer, const std::string& p
   return writer.value().Finish();
 }
 
-Result<Picture8> ReadPng(const std::string& path) {
+namespace {
+
+// The pixels of a file, rows from the top; `reader` then says what they are.
+Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_bits,
+                                             PngReader& reader) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
   if (!file) return Failed(path, std::strerror(errno));
-  PngReader reader;
-  if (!reader.ReadHeader(file.get())) return Failed(path, reader.complaint.text);
+  if (!reader.ReadHeader(file.get(), most_bits)) return Failed(path, reader.complaint.text);
 
-  Picture8 picture{reader.width, reader.height, {}};
-  const auto height = static_cast<std::size_t>(picture.height);
+  const auto height = static_cast<std::size_t>(reader.height);
   // Deflate shrinks at most 1032 to 1: a header that promises more pixels than that lies. Packed
   // formats (1 bit a pixel, spread to 24) have that much less behind each byte.
   const long begin = std::ftell(file.get());
@@ -221,11 +256,44 @@ Result<Picture8> ReadPng(const std::string& path) {
   if (reader.row_bytes * height / (24 * 1032) > size) {
     return Failed(path, "has more pixels than its bytes can hold");
   }
-  picture.rgb.resize(reader.row_bytes * height);
+  std::vector<std::uint8_t> bytes(reader.row_bytes * height);
   std::vector<png_bytep> rows(height);
-  for (std::size_t y = 0; y < height; ++y) rows[y] = picture.rgb.data() + reader.row_bytes * y;
+  for (std::size_t y = 0; y < height; ++y) rows[y] = bytes.data() + reader.row_bytes * y;
   if (!reader.ReadRows(rows.data())) return Failed(path, reader.complaint.text);
-  return picture;
+  return bytes;
+}
+
+}  // namespace
+
+Result<Picture8> ReadPng(const std::string& path) {
+  PngReader reader;
+  Result<std::vector<std::uint8_t>> bytes = ReadPixels(path, 8, reader);
+  if (!bytes) return bytes.error();
+  return Picture8{reader.width, reader.height, std::move(bytes).value()};
+}
+
+Result<ReadPictureResult> ReadPngFilm(const std::string& path) {
+  PngReader reader;
+  const Result<std::vector<std::uint8_t>> read = ReadPixels(path, 16, reader);
+  if (!read) return read.error();
+  const std::vector<std::uint8_t>& bytes = read.value();
+  ReadPictureResult result;
+  result.film = Film(reader.width, reader.height);
+  for (std::size_t i = 0; i < result.film.rgb.size(); ++i) {
+    const double value =
+        reader.bits == 16 ? (bytes[2 * i] << 8 | bytes[2 * i + 1]) / 65535.0 : bytes[i] / 255.0;
+    result.film.rgb[i] = static_cast<float>(value);
+  }
+  result.is_display = true;
+  result.bits = reader.bits;
+  result.is_srgb = reader.is_srgb;
+  if (reader.full_width > 0 && reader.full_height > 0) {
+    result.window = {reader.offset_x, reader.offset_y, reader.offset_x + reader.width,
+                     reader.offset_y + reader.height};
+    result.full_width = reader.full_width;
+    result.full_height = reader.full_height;
+  }
+  return result;
 }
 
 }  // namespace sheaf

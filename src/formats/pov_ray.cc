@@ -59,11 +59,12 @@ std::string Pigment(const Material& material, const Quad* quad) {
   if (const auto* checker = std::get_if<Checker>(&material.base_colour)) {
     return CheckerPigment(*checker, quad);
   }
-  return fmt::format("pigment {{ rgb {} transmit {} }}",
-                     Vector(std::get<Colour>(material.base_colour)), material.transmit.x);
+  const auto* texture = std::get_if<Texture>(&material.base_colour);
+  const Colour colour = texture ? texture->factor : std::get<Colour>(material.base_colour);
+  return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), material.transmit.x);
 }
 
-std::string Texture(const Scene& scene, const Material& material, const Quad* quad) {
+std::string TextureText(const Scene& scene, const Material& material, const Quad* quad) {
   return fmt::format("texture {{ {} {} }}", Pigment(material, quad), Finish(scene, material));
 }
 
@@ -107,6 +108,22 @@ void WriteSphere(Out out, const Sphere& sphere, const Material& material, std::u
 
 void WriteTriangle(Out out, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   fmt::format_to(out, "triangle {{ {}, {}, {} }}\n", Vector(a), Vector(b), Vector(c));
+}
+
+// Leaves the mesh open for its texture.
+void WriteMesh(Out out, const Mesh& mesh) {
+  fmt::format_to(out, "mesh {{\n");
+  for (const auto& corners : mesh.triangles) {
+    const auto position = [&](std::size_t i) { return Vec3d(mesh.positions[corners[i]]); };
+    if (mesh.normals.empty()) {
+      WriteTriangle(out, position(0), position(1), position(2));
+      continue;
+    }
+    const auto corner = [&](std::size_t i) {
+      return fmt::format("{}, {}", Vector(position(i)), Vector(Vec3d(mesh.normals[corners[i]])));
+    };
+    fmt::format_to(out, "smooth_triangle {{ {}, {}, {} }}\n", corner(0), corner(1), corner(2));
+  }
 }
 
 // A folder that goes away with the object; its path is empty where none could be made.
@@ -194,7 +211,7 @@ std::string PovText(const Scene& scene, const Camera& camera) {
                  glm::degrees(2 * std::atan(half_width)), Vector(camera.look_at));
   for (const Light& light : scene.lights) WriteLight(out, scene, light);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    fmt::format_to(out, "#declare T{} = {}\n", i, Texture(scene, scene.materials[i], nullptr));
+    fmt::format_to(out, "#declare T{} = {}\n", i, TextureText(scene, scene.materials[i], nullptr));
   }
   for (const Object& object : scene.objects) {
     const Material& material = scene.materials[object.material];
@@ -204,7 +221,12 @@ std::string PovText(const Scene& scene, const Camera& camera) {
       fmt::format_to(out, "mesh {{\n");
       WriteTriangle(out, quad->corners[0], quad->corners[1], quad->corners[2]);
       WriteTriangle(out, quad->corners[0], quad->corners[2], quad->corners[3]);
-      fmt::format_to(out, "{} }}\n", Texture(scene, material, quad));
+      fmt::format_to(out, "{} }}\n", TextureText(scene, material, quad));
+    } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
+      WriteMesh(out, *mesh);
+      fmt::format_to(out, "texture {{ T{} }}", object.material);
+      if (Transmits(material)) fmt::format_to(out, " interior {{ ior {} }}", material.ior);
+      fmt::format_to(out, " }}\n");
     }
   }
   // One mesh a material, which POV-Ray puts a tree of its own over.

@@ -13,7 +13,8 @@ namespace sheaf {
 // The scene through `camera`, which is a perspective one, as the twin of the crystal ball in
 // tests/reference does it: highlights by half vector, Fresnel's split at glass, whose shadow is
 // opaque, the depth limit of the scene's settings. Not exact: falloffs other than one of constant,
-// linear and quadratic take the highest term alone; checkers are of quads.
+// linear and quadratic take the highest term alone; checkers are of quads,
+// textures their factor alone, cones of lights and colours of vertices left out.
 std::string PovText(const Scene& scene, const Camera& camera);
 
 // Whether `povray` is on the path.

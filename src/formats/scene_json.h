@@ -14,6 +14,11 @@ namespace sheaf {
 // is kScene with the message `file:line: /json/path: what; did you mean "..."?`.
 Result<Scene> ReadSceneJson(const std::string& path);
 
+// The same within another scene, whose files and warnings these are.
+class SceneFiles;
+Result<Scene> ReadSceneJson(const std::string& path, SceneFiles& files);
+Result<Scene> ParseSceneJson(std::string_view text, const std::string& name, SceneFiles& files);
+
 // The same from memory; `name` stands for the file in messages.
 Result<Scene> ParseSceneJson(std::string_view text, const std::string& name);
 

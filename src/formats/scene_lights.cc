@@ -62,6 +62,26 @@ PointLight ReadPointLight(const JsonCursor& value) {
   return light;
 }
 
+constexpr NumberRange kConeAngle{0.0, 90.0, "a number in [0, 90]"};
+
+PointLight ReadSpotLight(const JsonCursor& value) {
+  PointLight light;
+  Cone cone;
+  JsonObject object(value);
+  ReadVector(object.Required("position"), &light.position);
+  ReadDirection(object.Required("direction"), &cone.direction);
+  object.Optional("inner").Read(kConeAngle, &cone.inner);
+  const JsonCursor outer = object.Optional("outer");
+  outer.Read(kConeAngle, &cone.outer);
+  if (!(cone.inner < cone.outer)) {
+    (outer.present() ? outer : object.Optional("inner")).Fail("inner must be below outer");
+  }
+  ReadFalloff(object.Optional("falloff"), &light.falloff);
+  object.Finish();
+  light.cone = cone;
+  return light;
+}
+
 DirectionalLight ReadDirectionalLight(const JsonCursor& value) {
   DirectionalLight light;
   JsonObject object(value);
@@ -82,9 +102,12 @@ double FalloffAt(const PointLight& light, const Vec3d& reference) {
 
 Light ReadLight(JsonObject* object) {
   Light light;
-  const JsonCursor source = object->OneOf({"point", "directional"});
-  const bool is_point = source.present() && source.key() == "point";
-  if (is_point) {
+  const JsonCursor source = object->OneOf({"point", "spot", "directional"});
+  const bool is_spot = source.present() && source.key() == "spot";
+  const bool is_point = is_spot || (source.present() && source.key() == "point");
+  if (is_spot) {
+    light.source = ReadSpotLight(source);
+  } else if (is_point) {
     light.source = ReadPointLight(source);
   } else {
     light.source = ReadDirectionalLight(source);

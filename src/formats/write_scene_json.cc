@@ -1,7 +1,9 @@
 #include "src/formats/write_scene_json.h"
 
-#include <cassert>
 #include <nlohmann/json.hpp>
+#include <set>
+
+#include "src/formats/scene_values.h"
 
 namespace sheaf {
 namespace {
@@ -10,15 +12,27 @@ using Json = nlohmann::ordered_json;
 
 Json VectorJson(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+const char* WrapName(Wrap wrap) {
+  return wrap == Wrap::kRepeat ? "repeat" : wrap == Wrap::kMirror ? "mirror" : "clamp";
+}
+
 Json MaterialJson(const Material& material) {
   Json json = {{"name", material.name}};
   if (const auto* checker = std::get_if<Checker>(&material.base_colour)) {
     json["base_colour"]["checker"] = {{"even", VectorJson(checker->even)},
                                       {"odd", VectorJson(checker->odd)},
                                       {"cells", {checker->cells.x, checker->cells.y}}};
+  } else if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
+    json["base_colour"]["texture"] = {
+        {"image", texture->image->name},
+        {"wrap", {WrapName(texture->wrap_u), WrapName(texture->wrap_v)}},
+        {"filter", texture->filter == Filter::kLinear ? "linear" : "nearest"},
+        {"srgb", texture->transfer == Transfer::kSrgb},
+        {"factor", VectorJson(texture->factor)}};
   } else {
     json["base_colour"] = VectorJson(std::get<Colour>(material.base_colour));
   }
+  if (material.emission != Colour(0.0)) json["emission"] = VectorJson(material.emission);
   json["ambient"] = material.ambient;
   json["kd"] = material.kd;
   json["ks"] = material.ks;
@@ -37,6 +51,23 @@ struct ShapeWriter {
     Json corners = Json::array();
     for (const Vec3d& corner : quad.corners) corners.push_back(VectorJson(corner));
     return {{"quad", {{"corners", corners}}}};
+  }
+  Json operator()(const Mesh& mesh) const {
+    const auto list = [](const auto& vectors) {
+      Json json = Json::array();
+      for (const auto& vector : vectors) {
+        Json numbers = Json::array();
+        for (int i = 0; i < vector.length(); ++i) numbers.push_back(vector[i]);
+        json.push_back(std::move(numbers));
+      }
+      return json;
+    };
+    Json json = {{"positions", list(mesh.positions)}};
+    if (!mesh.normals.empty()) json["normals"] = list(mesh.normals);
+    if (!mesh.uv.empty()) json["uv"] = list(mesh.uv);
+    if (!mesh.colours.empty()) json["colours"] = list(mesh.colours);
+    json["triangles"] = mesh.triangles;
+    return {{"mesh", std::move(json)}};
   }
   Json operator()(const Triangle& triangle) const {
     Json vertices = Json::array(), uv = Json::array();
@@ -61,8 +92,14 @@ Json LightJson(const Light& light) {
   if (!light.name.empty()) json["name"] = light.name;
   if (const auto* point = std::get_if<PointLight>(&light.source)) {
     const Falloff& falloff = point->falloff;
-    json["point"] = {{"position", VectorJson(point->position)},
-                     {"falloff", {falloff.constant, falloff.linear, falloff.quadratic}}};
+    Json& source = json[point->cone ? "spot" : "point"];
+    source = {{"position", VectorJson(point->position)},
+              {"falloff", {falloff.constant, falloff.linear, falloff.quadratic}}};
+    if (point->cone) {
+      source["direction"] = VectorJson(point->cone->direction);
+      source["inner"] = point->cone->inner;
+      source["outer"] = point->cone->outer;
+    }
   } else {
     const Vec3d& direction = std::get<DirectionalLight>(light.source).direction;
     json["directional"] = {{"direction", VectorJson(direction)}};
@@ -93,13 +130,37 @@ Json SettingsJson(const Settings& settings) {
                {"background", VectorJson(settings.background)},
                {"exposure", settings.exposure}};
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
+  if (settings.transfer == Transfer::kSrgb) json["srgb"] = "pictures";
   return json;
+}
+
+template <typename T>
+void MakeUnique(std::vector<T>* things, const std::string& otherwise) {
+  std::set<std::string> taken;
+  for (T& thing : *things) {
+    for (char& c : thing.name) {
+      if (HasControlCharacter({&c, 1})) c = '_';
+    }
+    if (thing.name.empty() && otherwise.empty()) continue;
+    const std::string base = thing.name.empty() ? otherwise : thing.name;
+    thing.name = base;
+    for (int i = 2; !taken.insert(thing.name).second; ++i) {
+      thing.name = base + " " + std::to_string(i);
+    }
+  }
 }
 
 }  // namespace
 
+void MakeNamesUnique(Scene* scene) {
+  MakeUnique(&scene->materials, "material");
+  MakeUnique(&scene->cameras, "camera");
+  MakeUnique(&scene->views, "view");
+  MakeUnique(&scene->objects, "");
+  MakeUnique(&scene->lights, "");
+}
+
 std::string SceneJsonText(const Scene& scene) {
-  assert(scene.settings.transfer == Transfer::kLinear);
   Json json = {{"settings", SettingsJson(scene.settings)},
                {"materials", Json::array()},
                {"objects", Json::array()},

@@ -8,10 +8,14 @@
 
 namespace sheaf {
 
-// ParseSceneJson reads the very numbers back. Objects refer to materials by name, so these need
-// names of their own. Colours are written as they are: with Transfer::kSrgb the reader would decode
-// them, so that transfer is refused by an assertion.
+// ParseSceneJson reads the very numbers back, with images where the scene's textures name them.
+// Objects refer to materials by name, so these need names of their own. Colours are written as they
+// are, linear; Transfer::kSrgb then is for pictures alone.
 std::string SceneJsonText(const Scene& scene);
+
+// Gives materials, cameras and views names that scene JSON allows: none empty, none twice, no
+// control characters; objects and lights those, or none.
+void MakeNamesUnique(Scene* scene);
 
 }  // namespace sheaf
 

@@ -4,13 +4,11 @@
 
 namespace sheaf {
 
-Film& BandQueue::Front(int width, int height) {
+Film& BandQueue::Front(int width, int height, Layers layers) {
   Film& film = films_[front_];
   // A band of the same size keeps its memory, which the system would otherwise have to clear anew.
   if (film.width != width || film.height != height) {
-    film.width = width;
-    film.height = height;
-    film.rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    film.Resize(width, height, layers);
   }
   return film;
 }

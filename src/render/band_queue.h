@@ -20,8 +20,9 @@ class BandQueue {
   // A sink that fails sets `stop`, so that the band in work ends soon too. Both outlive the queue.
   BandQueue(const BandSink& sink, std::atomic<bool>& stop) : sink_(sink), stop_(stop) {}
 
-  // The film that the sink does not have, in this size, holding anything. Valid until Push.
-  Film& Front(int width, int height);
+  // The film that the sink does not have, in this size and with these layers, holding anything.
+  // Valid until Push.
+  Film& Front(int width, int height, Layers layers);
 
   // Waits until the sink is done with what it has; an error if it failed.
   Status Wait();

@@ -1,5 +1,6 @@
 #include "src/render/compile_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -8,6 +9,7 @@
 #include "simd/roundoffs.h"
 #include "src/core/strict_tan.h"
 #include "src/scalar/vec3.h"
+#include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
@@ -40,23 +42,56 @@ struct Bounds {
   }
 };
 
+// How many primitives there are, and what of them some material or mesh asks for.
+struct Inventory {
+  std::uint32_t spheres = 0, triangles = 0;
+  bool has_coordinates = false, has_normals = false, has_colours = false;
+};
+
+Inventory TakeInventory(const Scene& scene) {
+  Inventory inventory;
+  for (const Material& material : scene.materials) {
+    inventory.has_coordinates |= !std::holds_alternative<Colour>(material.base_colour);
+  }
+  for (const Object& object : scene.objects) {
+    if (std::holds_alternative<Sphere>(object.shape)) ++inventory.spheres;
+    if (std::holds_alternative<Quad>(object.shape)) inventory.triangles += 2;
+    if (std::holds_alternative<Triangle>(object.shape)) ++inventory.triangles;
+    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
+      inventory.triangles += static_cast<std::uint32_t>(mesh->triangles.size());
+      inventory.has_normals |= !mesh->normals.empty();
+      inventory.has_colours |= !mesh->colours.empty();
+    }
+  }
+  return inventory;
+}
+
+template <typename Real, std::size_t N>
+void AllocateVertices(AlignedArray<Real> (&values)[3][N], std::uint32_t count) {
+  for (auto& vertex : values) {
+    for (auto& axis : vertex) axis.Allocate(StreamCapacity(count));
+  }
+}
+
 // Fills the arrays of one CompiledScene in the order of the objects.
 template <typename Real>
 class GeometryWriter {
  public:
   explicit GeometryWriter(CompiledScene<Real>& compiled) : compiled_(compiled) {}
 
-  void Allocate(std::uint32_t spheres, std::uint32_t triangles) {
+  void Allocate(const Inventory& inventory) {
+    inventory_ = inventory;
+    const std::uint32_t spheres = inventory.spheres, triangles = inventory.triangles;
     for (auto& axis : compiled_.sphere_center) axis.Allocate(StreamCapacity(spheres));
     compiled_.sphere_radius.Allocate(StreamCapacity(spheres));
     compiled_.sphere_id.Allocate(StreamCapacity(spheres));
-    for (auto& vertex : compiled_.triangle_vertex) {
-      for (auto& axis : vertex) axis.Allocate(StreamCapacity(triangles));
-    }
-    for (auto& vertex : compiled_.triangle_uv) {
-      for (auto& axis : vertex) axis.Allocate(StreamCapacity(triangles));
-    }
+    AllocateVertices(compiled_.triangle_vertex, triangles);
+    if (inventory.has_coordinates) AllocateVertices(compiled_.triangle_uv, triangles);
+    if (inventory.has_normals) AllocateVertices(compiled_.triangle_normal, triangles);
+    if (inventory.has_colours) AllocateVertices(compiled_.triangle_colour, triangles);
     compiled_.triangle_id.Allocate(StreamCapacity(triangles));
+    compiled_.primitives.reserve(std::size_t{spheres} + triangles);
+    compiled_.object_of_primitive.reserve(std::size_t{spheres} + triangles);
   }
 
   void StartObject(std::uint32_t object, std::uint32_t material) {
@@ -77,22 +112,36 @@ class GeometryWriter {
   }
 
   void Add(const Triangle& triangle) {
-    const std::uint32_t i = compiled_.triangle_count++;
-    Vec3<double> rounded[3];
+    const std::uint32_t i = AddVertices(triangle.vertices);
     for (int vertex = 0; vertex < 3; ++vertex) {
-      const auto& v = triangle.vertices[vertex];
-      rounded[vertex] = ToVec3(v).To<Real>().template To<double>();
-      bounds_.Include(v);
-      for (int axis = 0; axis < 3; ++axis) {
-        compiled_.triangle_vertex[vertex][axis][i] = static_cast<Real>(v[axis]);
-      }
-      for (int axis = 0; axis < 2; ++axis) {
-        compiled_.triangle_uv[vertex][axis][i] = static_cast<Real>(triangle.uv[vertex][axis]);
+      if (inventory_.has_coordinates) Put(compiled_.triangle_uv, vertex, i, triangle.uv[vertex]);
+      if (inventory_.has_normals) Put(compiled_.triangle_normal, vertex, i, glm::vec3(0));
+      if (inventory_.has_colours) Put(compiled_.triangle_colour, vertex, i, glm::vec3(1));
+    }
+  }
+
+  void Add(const Mesh& mesh) {
+    for (const auto& corners : mesh.triangles) {
+      const std::uint32_t i =
+          AddVertices({Vec3d(mesh.positions[corners[0]]), Vec3d(mesh.positions[corners[1]]),
+                       Vec3d(mesh.positions[corners[2]])});
+      for (int vertex = 0; vertex < 3; ++vertex) {
+        const std::uint32_t from = corners[static_cast<std::size_t>(vertex)];
+        if (inventory_.has_coordinates) {
+          Put(compiled_.triangle_uv, vertex, i,
+              mesh.uv.empty() ? glm::dvec2(Triangle{}.uv[static_cast<std::size_t>(vertex)])
+                              : glm::dvec2(mesh.uv[from]));
+        }
+        if (inventory_.has_normals) {
+          Put(compiled_.triangle_normal, vertex, i,
+              mesh.normals.empty() ? glm::vec3(0) : mesh.normals[from]);
+        }
+        if (inventory_.has_colours) {
+          Put(compiled_.triangle_colour, vertex, i,
+              mesh.colours.empty() ? glm::vec3(1) : mesh.colours[from]);
+        }
       }
     }
-    const auto area = scalar::Cross(rounded[1] - rounded[0], rounded[2] - rounded[0]);
-    if (!(scalar::Dot(area, area) > 0)) compiled_.triangle_vertex[0][0][i] = kNever;
-    compiled_.triangle_id[i] = NewId(i | kTriangleBit);
   }
 
   void Add(const Quad& quad) {
@@ -106,6 +155,30 @@ class GeometryWriter {
  private:
   static constexpr Real kNever = std::numeric_limits<Real>::quiet_NaN();
 
+  // A triangle with nothing but its vertices; returns its place.
+  std::uint32_t AddVertices(const std::array<Vec3d, 3>& vertices) {
+    const std::uint32_t i = compiled_.triangle_count++;
+    Vec3<double> rounded[3];
+    for (int vertex = 0; vertex < 3; ++vertex) {
+      const auto& v = vertices[static_cast<std::size_t>(vertex)];
+      rounded[vertex] = ToVec3(v).To<Real>().template To<double>();
+      bounds_.Include(v);
+      Put(compiled_.triangle_vertex, vertex, i, v);
+    }
+    const auto area = scalar::Cross(rounded[1] - rounded[0], rounded[2] - rounded[0]);
+    if (!(scalar::Dot(area, area) > 0)) compiled_.triangle_vertex[0][0][i] = kNever;
+    compiled_.triangle_id[i] = NewId(i | kTriangleBit);
+    return i;
+  }
+
+  template <std::size_t N, typename Value>
+  static void Put(AlignedArray<Real> (&values)[3][N], int vertex, std::uint32_t i,
+                  const Value& value) {
+    for (int axis = 0; axis < static_cast<int>(N); ++axis) {
+      values[vertex][axis][i] = static_cast<Real>(value[axis]);
+    }
+  }
+
   std::uint32_t NewId(std::uint32_t local) {
     compiled_.primitives.push_back({local, material_});
     compiled_.object_of_primitive.push_back(object_);
@@ -113,6 +186,7 @@ class GeometryWriter {
   }
 
   CompiledScene<Real>& compiled_;
+  Inventory inventory_;
   Bounds bounds_;
   std::uint32_t object_ = 0, material_ = 0;
 };
@@ -121,12 +195,18 @@ template <typename Real>
 MaterialData<Real> CompileMaterial(const Material& material, const Settings& settings) {
   MaterialData<Real> data{};
   const Checker* checker = std::get_if<Checker>(&material.base_colour);
-  const Colour even = checker ? checker->even : std::get<Colour>(material.base_colour);
-  data.kind = checker ? BaseColour::kChecker : BaseColour::kConstant;
+  const Texture* texture = std::get_if<Texture>(&material.base_colour);
+  const Colour even = checker   ? checker->even
+                      : texture ? texture->factor
+                                : std::get<Colour>(material.base_colour);
+  data.kind = checker   ? BaseColour::kChecker
+              : texture ? BaseColour::kTexture
+                        : BaseColour::kConstant;
   Store(even, data.even);
   Store(checker ? checker->odd : even, data.odd);
   for (int i = 0; i < 2; ++i) data.cells[i] = static_cast<Real>(checker ? checker->cells[i] : 1);
   Store(material.ambient * settings.ambient.value_or(settings.background), data.ambient);
+  Store(material.emission, data.emission);
   data.kd = static_cast<Real>(material.kd);
   data.ks = static_cast<Real>(material.ks);
   data.shininess = static_cast<Real>(material.shininess);
@@ -136,6 +216,25 @@ MaterialData<Real> CompileMaterial(const Material& material, const Settings& set
   data.needs = NeedsOf(data);
   return data;
 }
+
+template <typename Real>
+void CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
+  for (const Transfer transfer : {Transfer::kLinear, Transfer::kSrgb}) {
+    auto& table = compiled.decode[static_cast<int>(transfer)];
+    for (int byte = static_cast<int>(table.size()); byte < 256; ++byte) {
+      const double share = byte / 255.0;
+      table.push_back(static_cast<Real>(transfer == Transfer::kSrgb ? SrgbDecode(share) : share));
+    }
+  }
+  const Image& image = *texture.image;
+  compiled.images.push_back(texture.image);
+  compiled.textures.push_back({image.texels.data(), image.width, image.height,
+                               compiled.decode[static_cast<int>(texture.transfer)].data(),
+                               texture.wrap_u, texture.wrap_v, texture.filter});
+}
+
+// The cosines of a spot light's two angles differ by at least this, as in KHR_lights_punctual.
+constexpr double kLeastConeRim = 0.001;
 
 // The largest distance from `p` to a point of the box.
 double Reach(const Bounds& bounds, const glm::dvec3& p) {
@@ -162,10 +261,27 @@ LightData<Real> CompileLight(const Light& light, const Settings& settings, const
   data.falloff[0] = static_cast<Real>(point.falloff.constant);
   data.falloff[1] = static_cast<Real>(point.falloff.linear);
   data.falloff[2] = static_cast<Real>(point.falloff.quadratic);
+  if (point.cone) {
+    data.is_spot = 1;
+    Store(Unit(point.cone->direction), data.axis);
+    // cos * scale + offset is 1 at the inner angle and 0 at the outer.
+    const double inner = StrictCosDegrees(point.cone->inner);
+    const double outer = StrictCosDegrees(point.cone->outer);
+    const double scale = 1 / std::max(inner - outer, kLeastConeRim);
+    data.cone_scale = static_cast<Real>(scale);
+    data.cone_offset = static_cast<Real>(-outer * scale);
+  }
   return data;
 }
 
 }  // namespace
+
+template <typename Real, std::size_t N>
+void ShowVertices(const AlignedArray<Real> (&values)[3][N], const Real* (&view)[3][N]) {
+  for (int vertex = 0; vertex < 3; ++vertex) {
+    for (std::size_t axis = 0; axis < N; ++axis) view[vertex][axis] = values[vertex][axis].data();
+  }
+}
 
 template <typename Real>
 GeometryView<Real> CompiledScene<Real>::geometry() const {
@@ -177,14 +293,10 @@ GeometryView<Real> CompiledScene<Real>::geometry() const {
                   sphere_radius.data(),
                   sphere_id.data()};
   view.triangles.count = triangle_count;
-  for (int vertex = 0; vertex < 3; ++vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      view.triangles.vertex[vertex][axis] = triangle_vertex[vertex][axis].data();
-    }
-    for (int axis = 0; axis < 2; ++axis) {
-      view.triangles.uv[vertex][axis] = triangle_uv[vertex][axis].data();
-    }
-  }
+  ShowVertices(triangle_vertex, view.triangles.vertex);
+  ShowVertices(triangle_uv, view.triangles.uv);
+  ShowVertices(triangle_normal, view.triangles.normal);
+  ShowVertices(triangle_colour, view.triangles.colour);
   view.triangles.id = triangle_id.data();
   return view;
 }
@@ -192,20 +304,26 @@ GeometryView<Real> CompiledScene<Real>::geometry() const {
 template <typename Real>
 CompiledScene<Real> CompileScene(const Scene& scene) {
   CompiledScene<Real> compiled;
-  std::uint32_t spheres = 0, triangles = 0;
-  for (const Object& object : scene.objects) {
-    if (std::holds_alternative<Sphere>(object.shape)) ++spheres;
-    if (std::holds_alternative<Quad>(object.shape)) triangles += 2;
-    if (std::holds_alternative<Triangle>(object.shape)) ++triangles;
-  }
   GeometryWriter<Real> writer(compiled);
-  writer.Allocate(spheres, triangles);
+  writer.Allocate(TakeInventory(scene));
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     writer.StartObject(i, scene.objects[i].material);
     std::visit([&](const auto& shape) { writer.Add(shape); }, scene.objects[i].shape);
   }
   for (const Material& material : scene.materials) {
-    compiled.materials.push_back(CompileMaterial<Real>(material, scene.settings));
+    MaterialData<Real> data = CompileMaterial<Real>(material, scene.settings);
+    if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
+      data.texture = static_cast<std::uint32_t>(compiled.textures.size());
+      CompileTexture(*texture, compiled);
+    }
+    compiled.materials.push_back(data);
+  }
+  for (const Object& object : scene.objects) {
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh == nullptr) continue;
+    std::uint32_t& needs = compiled.materials[object.material].needs;
+    if (!mesh->normals.empty()) needs |= kNeedsNormals;
+    if (!mesh->colours.empty()) needs |= kNeedsTint;
   }
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, writer.bounds()));

@@ -2,6 +2,7 @@
 #ifndef SHEAF_RENDER_COMPILE_SCENE_H_
 #define SHEAF_RENDER_COMPILE_SCENE_H_
 
+#include <memory>
 #include <vector>
 
 #include "src/core/aligned_array.h"
@@ -17,12 +18,17 @@ template <typename Real>
 struct CompiledScene {
   AlignedArray<Real> sphere_center[3], sphere_radius;
   AlignedArray<std::uint32_t> sphere_id;
-  AlignedArray<Real> triangle_vertex[3][3], triangle_uv[3][2];
+  AlignedArray<Real> triangle_vertex[3][3];
+  // Empty where no material has coordinates, no mesh normals, no mesh colours.
+  AlignedArray<Real> triangle_uv[3][2], triangle_normal[3][3], triangle_colour[3][3];
   AlignedArray<std::uint32_t> triangle_id;
   std::uint32_t sphere_count = 0, triangle_count = 0;
   std::vector<PrimitiveInfo> primitives;
   std::vector<std::uint32_t> object_of_primitive;
   std::vector<MaterialData<Real>> materials;
+  std::vector<TextureData<Real>> textures;
+  std::vector<std::shared_ptr<const Image>> images;  // that the textures show
+  std::vector<Real> decode[2];  // by Transfer, 256 each; empty without textures
   std::vector<LightData<Real>> lights;
   Real background[3];
 

@@ -16,6 +16,7 @@
 #include "src/render/band_queue.h"
 #include "src/render/compile_scene.h"
 #include "src/render/sample_pattern.h"
+#include "src/render/store_layers.h"
 #include "src/render/tile_renderer.h"
 #include "src/scalar/render_adaptively.h"
 
@@ -37,7 +38,10 @@ class ScalarTileRenderer {
       : frame_(frame), stop_(stop) {}
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
-    const auto write = [&](int x, int y, const scalar::Vec3<Real>& colour) {
+    const bool has_layers = HasFirstHitLayers(film);
+    const auto write = [&](int x, int y, const scalar::Vec3<Real>& colour,
+                           const scalar::FirstHit<Real>& first) {
+      if (has_layers) StoreLayers(film, x - film_x, y - film_y, LayersOf(first));
       float* rgb = film.pixel(x - film_x, y - film_y);
       rgb[0] = static_cast<float>(colour.x);
       rgb[1] = static_cast<float>(colour.y);
@@ -49,7 +53,10 @@ class ScalarTileRenderer {
     }
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1 && !stop_.load(std::memory_order_relaxed); ++x) {
-        write(x, y, scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_));
+        scalar::FirstHit<Real> first;
+        const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_,
+                                                has_layers ? &first : nullptr);
+        write(x, y, colour, first);
       }
     }
   }
@@ -59,6 +66,12 @@ class ScalarTileRenderer {
   LaneUse lane_use(Phase /*phase*/) const { return {}; }
 
  private:
+  FirstHitLayers LayersOf(const scalar::FirstHit<Real>& first) const {
+    if (first.primitive == kNoPrimitive) return {};
+    return MakeLayers(first.t, first.normal, first.albedo,
+                      frame_.object_of_primitive[first.primitive]);
+  }
+
   const FrameView<Real>& frame_;
   scalar::PixelScratch<Real> scratch_;
   RayCounts tally_;
@@ -112,6 +125,13 @@ struct Worker {
                      renderer.rays().traced() - rays,
                      {now.batches - use.batches, now.live - use.live, now.lanes - use.lanes},
                      seconds});
+    if (!film.has(Layer::kHeat)) return;
+    const std::array<float, 3> heat = HeatOf(tiles.back());
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        std::copy(heat.begin(), heat.end(), film.at(Layer::kHeat, x - film_x, y - film_y));
+      }
+    }
   }
 };
 
@@ -132,7 +152,7 @@ void RenderTiles(const std::vector<std::unique_ptr<Worker<Renderer>>>& workers,
         tile.x1 = std::min(tile.x0 + size, band.x1);
         tile.y1 = std::min(tile.y0 + size, band.y1);
         Worker<Renderer>& chosen = *workers[static_cast<std::size_t>(worker)];
-        if (options.tile_costs == TileCosts::kOn) {
+        if (options.tile_costs == TileCosts::kOn || options.layers.has(Layer::kHeat)) {
           chosen.RenderWithCost(tile, band.x0, band.y0, film);
         } else {
           chosen.renderer.Render(tile, band.x0, band.y0, film);
@@ -163,7 +183,7 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
   for (int y = area.y0; y < area.y1 && status; y += rows) {
     const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};
     const Clock::time_point start = Clock::now();
-    Film& film = queue.Front(band.width(), band.height());
+    Film& film = queue.Front(band.width(), band.height(), options.layers);
     RenderTiles(workers, band, options, film, progress);
     stats.wall_seconds += SecondsSince(start);
 
@@ -191,11 +211,23 @@ Status RenderBands(const FrameView<Real>& frame, const PixelRect& area,
   return status;
 }
 
+std::uint64_t TriangleCount(const Scene& scene) {
+  std::uint64_t count = 0;
+  for (const Object& object : scene.objects) {
+    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) count += mesh->triangles.size();
+  }
+  return count;
+}
+
 template <typename Real>
 Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& options,
                 const BandSink& sink, RenderStats& stats, RenderProgress& progress) {
   const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
   const Clock::time_point start = Clock::now();
+  if (TriangleCount(scene) > kMaxTreePrimitives) {
+    return Error{ErrorKind::kScene, fmt::format("{} triangles, at most {} are possible",
+                                                TriangleCount(scene), kMaxTreePrimitives)};
+  }
   CompiledScene<Real> compiled = CompileScene<Real>(scene);
   if (options.skips == Skips::kOff) {
     for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
@@ -210,7 +242,9 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
   FrameView<Real> frame{compiled.geometry(),
                         tree.value().view(),
                         compiled.primitives,
+                        compiled.object_of_primitive,
                         compiled.materials,
+                        compiled.textures,
                         compiled.lights,
                         sample_x,
                         sample_y,
@@ -291,6 +325,15 @@ Status RenderToSink(const Scene& scene, const Camera& camera, const RenderOption
 const char* PrecisionName(Precision precision) {
   static constexpr const char* kNames[] = {"strict", "fast", "double"};
   return kNames[static_cast<int>(precision)];
+}
+
+std::array<float, 3> HeatOf(const TileCost& cost) {
+  const double pixels =
+      static_cast<double>(cost.tile.width()) * static_cast<double>(cost.tile.height());
+  const double lanes = static_cast<double>(std::max<std::uint64_t>(cost.lane_use.lanes, 1));
+  return {static_cast<float>(1e6 * cost.seconds / pixels),
+          static_cast<float>(static_cast<double>(cost.lane_use.live) / lanes),
+          static_cast<float>(static_cast<double>(cost.rays) / pixels)};
 }
 
 const char* PhaseName(Phase phase) {

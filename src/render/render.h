@@ -2,6 +2,7 @@
 #ifndef SHEAF_RENDER_RENDER_H_
 #define SHEAF_RENDER_RENDER_H_
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -61,6 +62,7 @@ struct RenderOptions {
   Skips skips = Skips::kOn;
   Timing timing = Timing::kOff;            // whether RenderStats::phase_seconds is filled
   TileCosts tile_costs = TileCosts::kOff;  // whether RenderStats::tiles is
+  Layers layers;                           // of the film, besides its colours
 };
 
 enum class Phase {
@@ -94,6 +96,9 @@ struct TileCost {
   LaneUse lane_use;  // of all phases; SIMD engine only
   double seconds = 0;
 };
+
+// Microseconds a pixel, the share of live lanes, rays a pixel: Layer::kHeat of its pixels.
+std::array<float, 3> HeatOf(const TileCost& cost);
 
 struct RenderStats {
   RayCounts rays;

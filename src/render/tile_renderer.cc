@@ -8,6 +8,8 @@
 #include "simd/generate_shadow.h"
 #include "simd/shade_ambient.h"
 #include "simd/triangle_surface.h"
+#include "src/render/store_layers.h"
+#include "src/render/tint_surfaces.h"
 #include "src/scalar/render_adaptively.h"
 
 namespace sheaf {
@@ -32,6 +34,9 @@ bool Contains(const PixelRect& rect, Real x, Real y) {
 
 template <typename Real>
 void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
+  layered_ = HasFirstHitLayers(film) ? &film : nullptr;
+  layered_x_ = film_x, layered_y_ = film_y;
+  if (layered_) ClearLayers(tile);
   if (frame_.is_adaptive()) {
     RenderAdaptively(tile);
   } else {
@@ -39,6 +44,7 @@ void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, F
     const std::size_t samples = frame_.sample_x.size();
     for (std::size_t i = 0; i < samples && !stop_.load(std::memory_order_relaxed); ++i) {
       RenderSample(pixels_, i);
+      layered_ = nullptr;
       if (samples > 1) AddSample(i);
     }
   }
@@ -52,6 +58,7 @@ void TileRenderer<Real>::RenderAdaptively(const PixelRect& tile) {
   records_first_hits_ = true;
   RenderSample(pixels_, 0);
   records_first_hits_ = false;
+  layered_ = nullptr;
   FindEdges(tile);
   for (std::size_t i = 1; i < frame_.sample_x.size(); ++i) {
     if (edges_.count == 0 || stop_.load(std::memory_order_relaxed)) return;
@@ -123,12 +130,18 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
     simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
                            surfaces_.output());
   }
+  const bool has_faces = bin.shape == ShapeKind::kTriangle && (material.needs & kNeedsNormals) != 0;
+  const auto surfaces = has_faces ? surfaces_.view() : WithoutFaces(surfaces_.view());
+  if (material.needs & kNeedsTint) {
+    TintSurfaces(material, frame_.textures, bin, surfaces, surfaces_.output());
+  }
   if (records_first_hits_ && depth == 0) RecordFirstHits(bin);
+  if (layered_ && depth == 0) RecordLayers(bin, material);
   Charge(Phase::kSurface, bin.batch.count, bin.batch.count);
 
-  simd::ShadeAmbient(material, surfaces_.view(), bin.batch.count, surface_colours_.output());
+  simd::ShadeAmbient(material, surfaces, bin.batch.count, surface_colours_.output());
   Charge(Phase::kShade, bin.batch.count, bin.batch.count);
-  if (material.needs & kNeedsLights) ShadeLights(material, bin.batch.count);
+  if (material.needs & kNeedsLights) ShadeLights(material, surfaces, bin.batch.count);
 
   auto colours = depth == 0 ? sample_.output() : ray_colours_.output();
   const auto shaded = surface_colours_.view();
@@ -139,28 +152,31 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
     colours.b[ray] = shaded.b[i];
   }
   Charge(Phase::kAccumulate);
-  if (material.needs & kNeedsChildren) Spawn(bundle, material, bin.batch.count, depth);
+  if (material.needs & kNeedsChildren) {
+    Spawn(bundle, material, surfaces, bin.batch.count, depth);
+  }
 }
 
 // Light by light, so that the shadow rays of a batch share their origin.
 template <typename Real>
-void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material, std::uint32_t count) {
+void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material,
+                                     const SurfaceView<Real>& surfaces, std::uint32_t count) {
   for (const LightData<Real>& light : frame_.lights) {
-    const std::uint32_t facing =
-        simd::FaceLight(light, material, surfaces_.view(), count, lit_.data());
+    const std::uint32_t facing = simd::FaceLight(light, material, surfaces, count, lit_.data());
     Charge(Phase::kShade, count, count);
     if (facing == 0) continue;
-    const std::uint32_t lit = light.casts_shadows ? FindShadows(light, count) : facing;
+    const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
     if (lit == 0) continue;
-    kernels_.shade_light(light, material, surfaces_.view(), lit_.data(), count,
-                         surface_colours_.output());
+    kernels_.shade_light(light, material, surfaces, lit_.data(), count, surface_colours_.output());
     Charge(Phase::kShade, lit, count);
   }
 }
 
 template <typename Real>
-std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light, std::uint32_t count) {
-  const std::uint32_t size = simd::GenerateShadow(light, surfaces_.view(), lit_.data(), count,
+std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light,
+                                              const SurfaceView<Real>& surfaces,
+                                              std::uint32_t count) {
+  const std::uint32_t size = simd::GenerateShadow(light, surfaces, lit_.data(), count,
                                                   shadow_rays_.output(), surface_of_ray_.data());
   rays_.shadow += size;
   RayIntervals<Real> intervals;
@@ -178,11 +194,11 @@ std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light, std:
 
 template <typename Real>
 void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material,
-                               std::uint32_t count, int depth) {
+                               const SurfaceView<Real>& surfaces, std::uint32_t count, int depth) {
   auto parents = bundle.paths.view();
   if (depth == 0) parents.weight_r = parents.weight_g = parents.weight_b = nullptr;
   const SpawnCounts spawned =
-      kernels_.spawn_rays(material, surfaces_.view(), count, parents, frame_.min_weight,
+      kernels_.spawn_rays(material, surfaces, count, parents, frame_.min_weight,
                           next_reflected_.rays.output(next_reflected_.count),
                           next_reflected_.paths.output(next_reflected_.count),
                           next_refracted_.rays.output(next_refracted_.count),
@@ -301,6 +317,39 @@ void TileRenderer<Real>::RecordFirstHits(const HitBin& bin) {
     scalar::FirstHit<Real>& first = first_hits_[bin.batch.ray[i]];
     first.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
     first.surface = scalar::SurfaceIdOf(primitive, frame_.primitives[primitive]);
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::ClearLayers(const PixelRect& tile) {
+  layered_tile_ = tile;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      StoreLayers(*layered_, x - layered_x_, y - layered_y_, FirstHitLayers{});
+    }
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::RecordLayers(const HitBin& bin, const MaterialData<Real>& material) {
+  const auto surfaces = surfaces_.view();
+  const auto hits = hits_.view();
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
+    const std::uint32_t ray = bin.batch.ray[i];
+    if (!Contains(layered_tile_, pixels_.x[ray], pixels_.y[ray])) continue;
+    // Only what BaseColourAt reads.
+    scalar::Surface<Real> surface{};
+    if (material.needs & kNeedsCoordinates) surface.u = surfaces.u[i], surface.v = surfaces.v[i];
+    if (material.needs & kNeedsTint) {
+      surface.tint = {surfaces.tint_r[i], surfaces.tint_g[i], surfaces.tint_b[i]};
+    }
+    const auto albedo = scalar::MultiplyColours(scalar::PatternAt(material, surface), surface.tint);
+    StoreLayers(*layered_, static_cast<int>(pixels_.x[ray]) - layered_x_,
+                static_cast<int>(pixels_.y[ray]) - layered_y_,
+                MakeLayers(hits.t[ray],
+                           scalar::Vec3<Real>{surfaces.normal_x[i], surfaces.normal_y[i],
+                                              surfaces.normal_z[i]},
+                           albedo, frame_.object_of_primitive[bin.batch.primitive[i]]));
   }
 }
 

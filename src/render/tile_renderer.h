@@ -77,17 +77,22 @@ class TileRenderer {
   void Generate(const PixelList& pixels, std::size_t sample);
   void TraceAndShade(const RayBundle<Real>& bundle, int depth);
   void ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth);
-  void ShadeLights(const MaterialData<Real>& material, std::uint32_t count);
+  void ShadeLights(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                   std::uint32_t count);
   // Returns how many surfaces the light reaches.
-  std::uint32_t FindShadows(const LightData<Real>& light, std::uint32_t count);
-  void Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material, std::uint32_t count,
-             int depth);
+  std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
+                            std::uint32_t count);
+  void Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material,
+             const SurfaceView<Real>& surfaces, std::uint32_t count, int depth);
   void FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children, std::uint32_t first,
                    int depth, int spawning_bins);
   void Accumulate(const RayBundle<Real>& bundle);
   void AddSample(std::size_t index);
   void AddSampleOfEdges(std::size_t index);
   void RecordFirstHits(const HitBin& bin);
+  // Gives the pixels of `tile` the layers of rays that meet nothing.
+  void ClearLayers(const PixelRect& tile);
+  void RecordLayers(const HitBin& bin, const MaterialData<Real>& material);
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
   void Reserve(std::uint32_t count);
   void StartClock();
@@ -115,6 +120,9 @@ class TileRenderer {
   std::vector<std::uint32_t> pixel_at_;             // position in pixels_, by row and column
   std::vector<bool> is_edge_;                       // by pixel of pixels_
   bool records_first_hits_ = false;
+  Film* layered_ = nullptr;  // where the layers of the sample in work go; null: it leaves none
+  PixelRect layered_tile_;
+  int layered_x_ = 0, layered_y_ = 0;  // the film's top left pixel
 
   RayBundle<Real> primary_;
   // The rays of this depth and of the next; reflected before refracted wherever their order counts.

@@ -18,6 +18,10 @@ struct FirstHit {
   Vec3<Real> colour = {0, 0, 0};  // of the sample
   Vec3<Real> normal = {0, 0, 0};  // where the primary ray hit, else 0
   std::uint32_t surface = kNoPrimitive;
+  // For the layers of a picture; of a hit alone.
+  Real t = 0;
+  Vec3<Real> albedo = {0, 0, 0};
+  std::uint32_t primitive = kNoPrimitive;
 };
 
 // What counts as one surface: a sphere, or all triangles of one material, which meshes are made of.

@@ -21,7 +21,9 @@ struct FrameView {
   GeometryView<Real> geometry;                // what surfaces are read from
   TreeView<Real> tree;                        // over it: what rays are traced against
   std::span<const PrimitiveInfo> primitives;  // by primitive id
+  std::span<const std::uint32_t> object_of_primitive;
   std::span<const MaterialData<Real>> materials;
+  std::span<const TextureData<Real>> textures;
   std::span<const LightData<Real>> lights;
   std::span<const Real> sample_x, sample_y;  // in [0, 1), one an element of the sample pattern
   CameraData<Real> camera;

@@ -17,8 +17,8 @@ PixelRect WithNeighbours(const FrameView<Real>& frame, const PixelRect& tile) {
           std::min(tile.y1 + 1, frame.height)};
 }
 
-// Calls write(x, y, colour) for every pixel of `tile`: its first sample, or the mean of all where
-// an edge lies between it and a neighbour above, below, left or right.
+// Calls write(x, y, colour, first hit) for every pixel of `tile`: its first sample, or the mean of
+// all where an edge lies between it and a neighbour above, below, left or right.
 template <typename Real, class Write>
 void RenderAdaptively(const FrameView<Real>& frame, const PixelRect& tile,
                       PixelScratch<Real>& scratch, RayCounts& tally, const std::atomic<bool>& stop,
@@ -49,7 +49,7 @@ void RenderAdaptively(const FrameView<Real>& frame, const PixelRect& tile,
         for (std::size_t i = 1; i < samples; ++i) colour = colour + sample(x, y, i, nullptr);
         colour = colour / static_cast<Real>(samples);
       }
-      write(x, y, colour);
+      write(x, y, colour, at(x, y));
     }
   }
 }

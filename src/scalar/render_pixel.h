@@ -30,12 +30,12 @@ template <typename Real>
 Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
                       const Surface<Real>& surface, RayCounts& tally) {
   if (!HasLocalLight(material, surface)) return {0, 0, 0};
-  const Vec3<Real> base = BaseColourAt(material, surface);
+  const Vec3<Real> base = BaseColourAt(material, frame.textures, surface);
   Vec3<Real> colour = AmbientLight(material, base);
   if (!ReactsToLight(material)) return colour;
   for (const LightData<Real>& light : frame.lights) {
     const Incidence<Real> incidence = IncidenceOf(light, surface);
-    if (!(incidence.n_dot_l > 0)) continue;
+    if (!incidence.reaches) continue;
     if (light.casts_shadows) {
       ++tally.shadow;
       if (TraceOccluded(frame.tree, ShadowRay(light, surface, incidence))) continue;
@@ -84,6 +84,9 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       if (depth == 0 && first) {
         first->normal = surface.normal;
         first->surface = SurfaceIdOf(hit.primitive, frame.primitives[hit.primitive]);
+        first->t = hit.t;
+        first->albedo = BaseColourAt(material, frame.textures, surface);
+        first->primitive = hit.primitive;
       }
       Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
       if (!SpawnsRays(material)) continue;
@@ -106,16 +109,17 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
 }
 
 // Rubbish after `stop` was set, which ends any pixel soon. The mean of the pixel's samples, added
-// up in the order of the pattern.
+// up in the order of the pattern. Leaves in `first`, unless that is null, what the first one hit.
 template <typename Real>
 Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<Real>& scratch,
-                       RayCounts& tally, const std::atomic<bool>& stop) {
+                       RayCounts& tally, const std::atomic<bool>& stop,
+                       FirstHit<Real>* first = nullptr) {
   Vec3<Real> sum = {0, 0, 0};
   const std::size_t samples = frame.sample_x.size();
   for (std::size_t i = 0; i < samples; ++i) {
     const Ray<Real> primary = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
                                         frame.sample_x[i], frame.sample_y[i]);
-    sum = sum + RenderSample(frame, primary, scratch, tally, stop);
+    sum = sum + RenderSample(frame, primary, scratch, tally, stop, i == 0 ? first : nullptr);
   }
   return sum / static_cast<Real>(samples);
 }

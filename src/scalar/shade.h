@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "src/scalar/pow.h"
+#include "src/scalar/sample_texture.h"
 #include "src/scalar/surface.h"
 
 namespace sheaf::scalar {
@@ -23,8 +25,8 @@ bool ReactsToLight(const MaterialData<Real>& material) {
 
 // A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.
 template <typename Real>
-Vec3<Real> BaseColourAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
-  if (material.kind == BaseColour::kConstant) return FromArray(material.even);
+Vec3<Real> PatternAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  if (material.kind != BaseColour::kChecker) return FromArray(material.even);
   const Real cell =
       std::floor(surface.u * material.cells[0]) + std::floor(surface.v * material.cells[1]);
   const bool odd = cell != 2 * std::floor(cell / 2);
@@ -32,8 +34,28 @@ Vec3<Real> BaseColourAt(const MaterialData<Real>& material, const Surface<Real>&
 }
 
 template <typename Real>
+Vec3<Real> MultiplyColours(Vec3<Real> a, Vec3<Real> b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+// What a texture and the vertices' colours multiply the base colour with.
+template <typename Real>
+Vec3<Real> TintAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+                  const Surface<Real>& surface) {
+  if (material.kind != BaseColour::kTexture) return surface.tint;
+  return MultiplyColours(surface.tint,
+                         SampleTexture(textures[material.texture], surface.u, surface.v));
+}
+
+template <typename Real>
+Vec3<Real> BaseColourAt(const MaterialData<Real>& material,
+                        std::span<const TextureData<Real>> textures, const Surface<Real>& surface) {
+  return MultiplyColours(PatternAt(material, surface), TintAt(material, textures, surface));
+}
+
+template <typename Real>
 Vec3<Real> AmbientLight(const MaterialData<Real>& material, Vec3<Real> base) {
-  return {material.ambient[0] * base.x, material.ambient[1] * base.y, material.ambient[2] * base.z};
+  return MultiplyColours(FromArray(material.ambient), base) + FromArray(material.emission);
 }
 
 // A light as the surface sees it.
@@ -42,8 +64,18 @@ struct Incidence {
   Vec3<Real> to_light;  // from the surface to the light's position; a directional light's vector
   Vec3<Real> l;         // unit
   Real n_dot_l;         // NaN where the light lies on the point: then it gives nothing
-  Real attenuation;     // 1 / (kc + kl r + kq r^2)
+  Real attenuation;     // 1 / (kc + kl r + kq r^2), of a spot light times its cone's share
+  bool reaches;         // whether the surface faces the light, within the cone of a spot light
 };
+
+// A spot light's share toward a surface that sees it along `l`: KHR_lights_punctual, "Inner and
+// Outer Cone Angles".
+template <typename Real>
+Real ConeShare(const LightData<Real>& light, Vec3<Real> l) {
+  const Real share = -Dot(l, FromArray(light.axis)) * light.cone_scale + light.cone_offset;
+  const Real clamped = share > 0 ? (share < 1 ? share : Real(1)) : Real(0);
+  return clamped * clamped;
+}
 
 template <typename Real>
 Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& surface) {
@@ -60,11 +92,18 @@ Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& s
   incidence.n_dot_l = Dot(surface.normal, incidence.l);
   incidence.attenuation =
       1 / ((light.falloff[0] + light.falloff[1] * distance) + light.falloff[2] * squared);
+  // Nor does a shading normal light the back of a face.
+  incidence.reaches = incidence.n_dot_l > 0 && Dot(surface.face, incidence.l) > 0;
+  if (light.is_spot) {
+    const Real share = ConeShare(light, incidence.l);
+    incidence.attenuation = incidence.attenuation * share;
+    incidence.reaches = incidence.reaches && share > 0;
+  }
   return incidence;
 }
 
-// What one unoccluded light adds, n_dot_l > 0. The highlight has the light's colour; there is no
-// 1/pi.
+// What one unoccluded light adds that reaches the surface. The highlight has the light's colour;
+// there is no 1/pi.
 template <typename Real>
 Vec3<Real> LitBy(const LightData<Real>& light, const MaterialData<Real>& material,
                  const Surface<Real>& surface, Vec3<Real> base, const Incidence<Real>& incidence) {

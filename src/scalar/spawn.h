@@ -55,6 +55,17 @@ struct Spawned {
   Path<Real> reflected, refracted;
 };
 
+// A shading normal other than the face's may send a ray to the wrong side of its face, `side` being
+// 1 above it and -1 below. Such a ray is mirrored at the face once more, which joins without a step
+// where rays are just right.
+template <typename Real>
+Vec3<Real> KeepOnSide(const Surface<Real>& surface, Vec3<Real> direction, Real side) {
+  const Vec3<Real> n = surface.normal, f = surface.face;
+  if (n.x == f.x && n.y == f.y && n.z == f.z) return direction;
+  const Real height = Dot(direction, f);
+  return height * side < 0 ? direction - f * (2 * height) : direction;
+}
+
 template <typename Real>
 Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
                     const Real (&weight)[3]) {
@@ -66,11 +77,14 @@ Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& sur
   if (AnyPositive(material.transmit)) split = FresnelSplit(eta, cos_i);
 
   Spawned<Real> spawned;
-  const Vec3<Real> away = n * surface.offset;
-  spawned.reflected.ray = {surface.position + away, Normalize(d + n * (2 * cos_i)), surface.source};
-  spawned.refracted.ray = {surface.position - away,
-                           Normalize(d * eta + n * (eta * cos_i - split.cos_t)),
-                           surface.source ^ kInsideBit};
+  const Vec3<Real> away = surface.face * surface.offset;
+  spawned.reflected.ray = {surface.position + away,
+                           Normalize(KeepOnSide(surface, d + n * (2 * cos_i), Real(1))),
+                           surface.source};
+  spawned.refracted.ray = {
+      surface.position - away,
+      Normalize(KeepOnSide(surface, d * eta + n * (eta * cos_i - split.cos_t), Real(-1))),
+      surface.source ^ kInsideBit};
   for (int i = 0; i < 3; ++i) {
     const Real reflect = material.reflect[i] + material.transmit[i] * split.reflectance;
     const Real transmit = split.is_total ? Real(0) : material.transmit[i] * (1 - split.reflectance);

@@ -16,9 +16,11 @@ namespace sheaf::scalar {
 template <typename Real>
 struct Surface {
   Vec3<Real> position;
-  Vec3<Real> normal;     // unit, facing the ray
+  Vec3<Real> normal;     // for shading: unit, on the face's side
+  Vec3<Real> face;       // the face's own: unit, facing the ray
   Vec3<Real> direction;  // of the ray, unit
   Real u = 0, v = 0;
+  Vec3<Real> tint = {1, 1, 1};  // of the vertices' colours
   Real offset;
   std::uint32_t source;
 
@@ -45,6 +47,7 @@ Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   Surface<Real> surface;
   surface.position = position.template To<Real>();
   surface.normal = (leaves ? -out : out).template To<Real>();
+  surface.face = surface.normal;
   surface.direction = ray.direction;
   // Where c + r n cancels, the error is that of its wide terms.
   const Vec3<W> terms = {std::abs(c.x) + r, std::abs(c.y) + r, std::abs(c.z) + r};
@@ -53,6 +56,12 @@ Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
                         kTermRoundoffs<W> * AbsDot(out, terms));
   surface.source = hit.primitive | (leaves ? kInsideBit : 0);
   return surface;
+}
+
+template <typename Real>
+Vec3<Wide<Real>> VertexValue(const Real* const (&values)[3][3], int vertex, std::uint32_t i) {
+  return Vec3<Real>{values[vertex][0][i], values[vertex][1][i], values[vertex][2][i]}
+      .template To<Wide<Real>>();
 }
 
 // The position is the barycentric mean of the vertices, whose error lies almost wholly in the
@@ -72,14 +81,31 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
 
   Surface<Real> surface;
   surface.position = position.template To<Real>();
-  surface.normal = (inside ? -front : front).template To<Real>();
+  surface.face = (inside ? -front : front).template To<Real>();
+  surface.normal = surface.face;
   surface.direction = ray.direction;
-  const auto mean = [&](int axis) {
-    const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };
-    return static_cast<Real>((uv(0) * w0 + uv(1) * w1) + uv(2) * w2);
+  const auto mean = [&](const Real* const(&values)[3][3]) {
+    return (VertexValue(values, 0, i) * w0 + VertexValue(values, 1, i) * w1) +
+           VertexValue(values, 2, i) * w2;
   };
-  surface.u = mean(0);
-  surface.v = mean(1);
+  if (triangles.normal[0][0]) {
+    const Vec3<W> smooth = mean(triangles.normal);
+    if (Dot(smooth, smooth) > 0) {  // not NaN either
+      const Vec3<W> unit = NormalizeWide(smooth);
+      // Files disagree on the side that normals show: it is the face's, which faces the ray.
+      const bool turn = (Dot(unit, front) < 0) != inside;
+      surface.normal = (turn ? -unit : unit).template To<Real>();
+    }
+  }
+  if (triangles.colour[0][0]) surface.tint = mean(triangles.colour).template To<Real>();
+  if (triangles.uv[0][0]) {
+    const auto coordinate = [&](int axis) {
+      const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };
+      return static_cast<Real>((uv(0) * w0 + uv(1) * w1) + uv(2) * w2);
+    };
+    surface.u = coordinate(0);
+    surface.v = coordinate(1);
+  }
   // A neighbour's plane is tested from vertices that are as large as these, not as this point.
   const Vec3<W> terms = {(std::abs(v0.x) + std::abs(v1.x)) + std::abs(v2.x),
                          (std::abs(v0.y) + std::abs(v1.y)) + std::abs(v2.y),

@@ -36,20 +36,68 @@ struct PixelRect {
   int height() const { return y1 - y0; }
 };
 
+// What a picture can hold of each pixel besides its colour: of what the pixel's first sample met.
+enum class Layer {
+  kDepth,   // distance from the ray's origin; infinite where it met nothing
+  kNormal,  // of shading, unit, facing the ray; else 0
+  kAlbedo,  // base colour, linear; else 0
+  kId,      // one more than the object's number; else 0
+  kHeat,    // of the tile: microseconds a pixel, share of live lanes, rays a pixel
+  kCount
+};
+inline constexpr int kLayerCount = static_cast<int>(Layer::kCount);
+inline constexpr int kLayerChannels[kLayerCount] = {1, 3, 3, 1, 3};
+const char* LayerName(Layer layer);  // "depth", "normal", "albedo", "id" or "heat"
+
+// A set of layers.
+class Layers {
+ public:
+  bool has(Layer layer) const { return bits_ >> static_cast<int>(layer) & 1u; }
+  bool empty() const { return bits_ == 0; }
+  void Add(Layer layer) { bits_ |= 1u << static_cast<int>(layer); }
+
+ private:
+  unsigned bits_ = 0;
+};
+
 // Interleaved RGB floats, rows from the top; a new film's hold anything. A crop's film holds the
-// crop alone.
+// crop alone. A layer that was not asked for is empty.
 struct Film {
   int width = 0, height = 0;
-  std::vector<float, UninitializedAllocator<float>> rgb;  // 3 * width * height
+  using Floats = std::vector<float, UninitializedAllocator<float>>;
+  Floats rgb;                  // 3 * width * height
+  Floats layers[kLayerCount];  // kLayerChannels * width * height
 
   Film() = default;
-  Film(int w, int h)
-      : width(w), height(h), rgb(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
-  float* pixel(int x, int y) {
-    return &rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(x))];
+  explicit Film(int w, int h, Layers wanted = {}) { Resize(w, h, wanted); }
+  // What it held is lost, but not its memory.
+  void Resize(int w, int h, Layers wanted) {
+    width = w;
+    height = h;
+    rgb.resize(3 * pixel_count());
+    for (int i = 0; i < kLayerCount; ++i) {
+      if (!wanted.has(static_cast<Layer>(i))) continue;
+      layers[i].resize(static_cast<std::size_t>(kLayerChannels[i]) * pixel_count());
+    }
   }
-  const float* pixel(int x, int y) const { return const_cast<Film*>(this)->pixel(x, y); }
+  std::size_t pixel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+  float* pixel(int x, int y) { return &rgb[3 * index(x, y)]; }
+  const float* pixel(int x, int y) const { return &rgb[3 * index(x, y)]; }
+
+  bool has(Layer layer) const { return !layers[static_cast<int>(layer)].empty(); }
+  float* at(Layer layer, int x, int y) {
+    const int i = static_cast<int>(layer);
+    return &layers[i][static_cast<std::size_t>(kLayerChannels[i]) * index(x, y)];
+  }
+  const float* at(Layer layer, int x, int y) const {
+    return const_cast<Film*>(this)->at(layer, x, y);
+  }
 };
 
 }  // namespace sheaf

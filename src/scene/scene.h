@@ -9,10 +9,13 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "simd/layout.h"
 
 namespace sheaf {
 
@@ -27,10 +30,31 @@ struct Checker {
   glm::dvec2 cells{1.0};  // cells across the unit interval of u and of v, > 0
 };
 
+enum class Transfer { kLinear, kSrgb };
+
+// A picture to take colours from. Rows from the top; a texel's lowest byte is red, then green and
+// blue; the highest counts for nothing.
+struct Image {
+  std::string name;                   // for messages and for files made of it; may be empty
+  int width = 0, height = 0;          // [1, kMaxTextureSide]
+  std::vector<std::uint32_t> texels;  // width * height
+};
+
+// An image on a surface, u to the right and v down, once across the unit interval of each. Its
+// colours are multiplied by `factor`.
+struct Texture {
+  std::shared_ptr<const Image> image;   // not null
+  Transfer transfer = Transfer::kSrgb;  // of the image
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  Filter filter = Filter::kLinear;
+  Colour factor{1.0};
+};
+
 // Whitted's material: what the surface itself sends to the eye, and what it passes on.
 struct Material {
   std::string name;
-  std::variant<Colour, Checker> base_colour = Colour(1.0);
+  std::variant<Colour, Checker, Texture> base_colour = Colour(1.0);
+  Colour emission{0.0};    // seen as it is, whatever lights there are
   double ambient = 0.0;    // ka, >= 0: ka * base * the scene's ambient light
   double kd = 0.0;         // diffuse, >= 0
   double ks = 0.0;         // half-vector highlight, >= 0; has the light's colour
@@ -58,9 +82,19 @@ struct Quad {
   std::array<Vec3d, 4> corners;
 };
 
+// Triangles that share vertices, in the floats of model files. Front side: counter-clockwise.
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  // Each empty, or one a vertex.
+  std::vector<glm::vec3> normals;  // for shading, of any length; 0: the face's own
+  std::vector<glm::vec2> uv;
+  std::vector<glm::vec3> colours;                       // linear, times the base colour
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // vertices, below positions.size()
+};
+
 struct Object {
   std::string name;  // may be empty
-  std::variant<Sphere, Quad, Triangle> shape;
+  std::variant<Sphere, Quad, Triangle, Mesh> shape;
   std::uint32_t material = 0;  // index into Scene::materials
 };
 
@@ -69,9 +103,17 @@ struct Falloff {
   double constant = 0.0, linear = 0.0, quadratic = 1.0;  // >= 0, not all 0
 };
 
+// Light in a cone alone: all of it within `inner` of the axis, none beyond `outer`, smooth between
+// (KHR_lights_punctual).
+struct Cone {
+  Vec3d direction{0.0, -1.0, 0.0};   // the way the light travels; any length but 0
+  double inner = 0.0, outer = 45.0;  // degrees from the axis, 0 <= inner < outer <= 90
+};
+
 struct PointLight {
   Vec3d position{0.0};
   Falloff falloff;
+  std::optional<Cone> cone = std::nullopt;
 };
 
 struct DirectionalLight {
@@ -109,8 +151,6 @@ struct View {
   std::string name;
   std::vector<std::uint32_t> cameras;  // indices into Scene::cameras
 };
-
-enum class Transfer { kLinear, kSrgb };
 
 inline constexpr int kMaxImageSide = 65536;
 inline constexpr int kMaxSamples = 65536;

@@ -1,0 +1,31 @@
+// `sheaf check`: is this scene sound, and what of it would be skipped?
+#ifndef SHEAF_APP_CHECK_COMMAND_H_
+#define SHEAF_APP_CHECK_COMMAND_H_
+
+#include <string>
+#include <vector>
+
+#include "src/app/open_scene.h"
+#include "src/core/error.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sheaf {
+
+struct CheckRequest {
+  SceneOptions options;
+  std::vector<std::string> scenes;
+  bool json = false;
+};
+
+// Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
+CLI::App* AddCheckCommand(CLI::App& app, CheckRequest& request);
+
+// Reads every scene, also after a bad one; the error returned is the first, the others are printed.
+Status RunCheck(const CheckRequest& request);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_CHECK_COMMAND_H_

@@ -1,0 +1,152 @@
+#include "src/app/convert_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "src/app/add_options.h"
+#include "src/app/choose.h"
+#include "src/core/atomic_file.h"
+#include "src/formats/picture.h"
+#include "src/formats/read_scene.h"
+#include "src/formats/write_scene_json.h"
+#include "src/scene/srgb.h"
+
+namespace sheaf {
+namespace {
+
+bool IsSameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
+// ---- Scenes ----
+
+Status WriteImage(const Image& image, const std::string& path) {
+  Picture8 picture{image.width, image.height, {}};
+  picture.rgb.reserve(3 * image.texels.size());
+  for (const std::uint32_t texel : image.texels) {
+    for (const int shift : {0, 8, 16}) {
+      picture.rgb.push_back(static_cast<std::uint8_t>(texel >> shift & 255));
+    }
+  }
+  return WritePng(picture, Transfer::kLinear, path);
+}
+
+// Textures lie beside the scene that names them, as PNG.
+Status WriteTextures(Scene* scene, const std::string& output) {
+  const std::filesystem::path path(output);
+  std::map<const Image*, std::shared_ptr<const Image>> written;
+  for (Material& material : scene->materials) {
+    auto* texture = std::get_if<Texture>(&material.base_colour);
+    if (texture == nullptr) continue;
+    std::shared_ptr<const Image>& named = written[texture->image.get()];
+    if (!named) {
+      Image copy = *texture->image;
+      copy.name = fmt::format("{}-texture-{}.png", path.stem().string(), written.size());
+      const Status status = WriteImage(copy, (path.parent_path() / copy.name).string());
+      if (!status) return status;
+      named = std::make_shared<const Image>(std::move(copy));
+    }
+    texture->image = named;
+  }
+  return Done{};
+}
+
+Status ConvertScene(const ConvertRequest& request) {
+  if (!IsScenePath(request.output) || IsModelPath(request.output)) {
+    return Usage(
+        fmt::format("-o {}: a scene becomes scene JSON, whose name ends in .json", request.output));
+  }
+  if (const Status writable = CheckWritable(request.output); !writable) return writable;
+  Result<Scene> scene = OpenScene(request.input, request.options);
+  if (!scene) return scene.error();
+  if (const Status written = WriteTextures(&scene.value(), request.output); !written) {
+    return written;
+  }
+  MakeNamesUnique(&scene.value());
+  return WriteFileWhole(request.output, SceneJsonText(scene.value()));
+}
+
+// ---- Pictures ----
+
+// What is encoded for a display becomes light, if the file says how it is encoded.
+void DecodeLight(ReadPictureResult& picture) {
+  if (picture.is_display && picture.is_srgb) {
+    for (float& value : picture.film.rgb) {
+      value = static_cast<float>(SrgbDecode(static_cast<double>(value)));
+    }
+  }
+  picture.is_display = false;
+}
+
+Status ConvertPicture(const ConvertRequest& request) {
+  if (const Status known = CheckPicturePath(request.output); !known) return known;
+  if (request.bits) {
+    if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
+  }
+  if (const Status writable = CheckWritable(request.output); !writable) return writable;
+  Result<ReadPictureResult> read = ReadPicture(request.input);
+  if (!read) return read.error();
+  ReadPictureResult& picture = read.value();
+  const Film& film = picture.film;
+  const bool keeps = request.transfer == "keep";
+  PictureSpec spec = WholePicture(film.width, film.height, Transfer::kLinear);
+  if (picture.window.width() > 0) {
+    spec.window = picture.window;
+    spec.full_width = picture.full_width;
+    spec.full_height = picture.full_height;
+  }
+  spec.bits = request.bits.value_or(0);
+  if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
+  if (keeps && picture.is_display && !HoldsFloats(request.output)) {
+    spec.values = Values::kEncoded;
+  } else {
+    DecodeLight(picture);
+  }
+  if (HoldsLayers(request.output)) {
+    for (int i = 0; i < kLayerCount; ++i) {
+      if (film.has(static_cast<Layer>(i))) spec.layers.Add(static_cast<Layer>(i));
+    }
+  }
+  return WritePicture(film, spec, request.output);
+}
+
+}  // namespace
+
+CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request) {
+  CLI::App* convert = app.add_subcommand(
+      "convert", "Turn a scene or model into scene JSON, or a picture into another format");
+  convert->add_option("INPUT", request.input, "A scene, a model or a picture")
+      ->required()
+      ->option_text(" ");
+  convert->add_option("-o", request.output, "The ending chooses the format")
+      ->required()
+      ->option_text("PATH");
+  AddInteger(*convert, "--bits", request.bits, 8, 32,
+             "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
+  convert
+      ->add_option("--transfer", request.transfer,
+                   "How a .png encodes light; keep: as the input does, or linear")
+      ->option_text("keep|linear|srgb")
+      ->check(CLI::IsMember({"keep", "linear", "srgb"}));
+  AddSceneOptions(*convert, request.options);
+  return convert;
+}
+
+Status RunConvert(const ConvertRequest& request) {
+  if (IsSameFile(request.input, request.output)) {
+    return Usage(fmt::format("-o {}: this is the input", request.output));
+  }
+  if (CheckPicturePath(request.input)) return ConvertPicture(request);
+  if (IsScenePath(request.input)) return ConvertScene(request);
+  return Usage(
+      fmt::format("{}: neither a scene (.json, .nff, .obj, .ply, .gltf, .glb) nor a "
+                  "picture (.png, .pfm, .exr)",
+                  request.input));
+}
+
+}  // namespace sheaf

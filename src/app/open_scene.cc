@@ -1,0 +1,82 @@
+#include "src/app/open_scene.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "src/app/add_options.h"
+#include "src/app/choose.h"
+#include "src/app/parse_options.h"
+#include "src/formats/read_scene.h"
+
+namespace sheaf {
+namespace {
+
+std::optional<Vec3d> ParsePoint(const std::string& text) {
+  const std::vector<std::string> words = SplitAtCommas(text);
+  if (words.size() != 3) return std::nullopt;
+  Vec3d point;
+  for (int i = 0; i < 3; ++i) {
+    const auto number = ParseNumber(words[static_cast<std::size_t>(i)], -1e30, 1e30);
+    if (!number) return std::nullopt;
+    point[i] = *number;
+  }
+  return point;
+}
+
+// The first camera as the command line wants it.
+Status Aim(const SceneOptions& options, Scene* scene) {
+  if (scene->cameras.empty()) return Done{};
+  Camera& camera = scene->cameras.front();
+  camera.eye = options.eye.value_or(camera.eye);
+  camera.look_at = options.look_at.value_or(camera.look_at);
+  if (options.fov) camera.projection = Perspective{*options.fov};
+  const Vec3d ahead = camera.look_at - camera.eye;
+  if (!(glm::length(ahead) > 0)) return Usage("--eye, --look-at: the camera looks at its own eye");
+  if (glm::length(glm::cross(ahead, camera.up)) <=
+      1e-6 * glm::length(ahead) * glm::length(camera.up)) {
+    camera.up = std::abs(ahead.z) > std::abs(ahead.y) ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+void AddSceneOptions(CLI::App& app, SceneOptions& options) {
+  AddParsed(app, "--eye", options.eye, "X,Y,Z", "a point like 1,2.5,-3",
+            "Where the scene's first camera stands", &ParsePoint);
+  AddParsed(app, "--look-at", options.look_at, "X,Y,Z", "a point like 1,2.5,-3",
+            "What the scene's first camera looks at", &ParsePoint);
+  AddParsed(app, "--fov", options.fov, "DEGREES", "a number between 0 and 180",
+            "Its full vertical angle", [](const std::string& text) {
+              const auto fov = ParseNumber(text, 0, 180);
+              return fov && *fov > 0 && *fov < 180 ? fov : std::nullopt;
+            });
+  AddInteger(app, "--cone-sides", options.cone_sides, 3, kMaxConeSides,
+             "Sides of an NFF file's cones and cylinders; 32 if absent");
+  app.add_flag("--allow-outside", options.allow_outside,
+               "Let the scene name files outside its folder");
+}
+
+Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options) {
+  ReadOptions read;
+  read.outside = options.allow_outside ? Outside::kAllowed : Outside::kRefused;
+  read.cone_sides = options.cone_sides.value_or(read.cone_sides);
+  Result<ReadSceneResult> result = ReadScene(path, read);
+  if (!result) return result.error();
+  OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings)};
+  if (const Status aimed = Aim(options, &opened.scene); !aimed) return aimed.error();
+  return opened;
+}
+
+Result<Scene> OpenScene(const std::string& path, const SceneOptions& options) {
+  Result<OpenedScene> opened = OpenSceneWithWarnings(path, options);
+  if (!opened) return opened.error();
+  for (const std::string& warning : opened.value().warnings) {
+    std::fprintf(stderr, "sheaf: warning: %s\n", warning.c_str());
+  }
+  return std::move(opened.value().scene);
+}
+
+}  // namespace sheaf

@@ -1,0 +1,124 @@
+#include "src/formats/image.h"
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <bit>
+#include <cstring>
+#include <filesystem>
+
+#include "src/formats/printable.h"
+#include "src/formats/read_file.h"
+
+namespace sheaf {
+namespace {
+
+Error Refused(std::string_view what) { return {ErrorKind::kScene, std::string(what)}; }
+
+// More pixels a byte than either format can pack: 1032 times by deflate and 8 a byte before that;
+// a bit for a block of 64 in JPEG.
+constexpr std::uint64_t kMostPixelsPerByte = 8 * 1032;
+
+Status CheckSize(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
+  if (width < 1 || height < 1 || width > kMaxTextureSide || height > kMaxTextureSide) {
+    return Refused(
+        fmt::format("an image of {}x{}; sides may be 1 to {}", width, height, kMaxTextureSide));
+  }
+  if (width * height / kMostPixelsPerByte > bytes) {
+    return Refused(fmt::format("{} bytes cannot hold {}x{} pixels", bytes, width, height));
+  }
+  return Done{};
+}
+
+Image NewImage(std::uint64_t width, std::uint64_t height) {
+  return {{},
+          static_cast<int>(width),
+          static_cast<int>(height),
+          std::vector<std::uint32_t>(width * height)};
+}
+
+// Decoders write r, g, b, a; texels are numbers.
+void ToNumbers(Image& image) {
+  if constexpr (std::endian::native == std::endian::big) {
+    for (std::uint32_t& texel : image.texels) {
+      unsigned char bytes[4];
+      std::memcpy(bytes, &texel, 4);
+      texel =
+          bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
+    }
+  }
+}
+
+Result<Image> DecodePng(std::string_view bytes) {
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
+  struct Free {
+    png_image* png;
+    ~Free() { png_image_free(png); }
+  } const free{&png};
+  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) {
+    return Refused(Printable(png.message));
+  }
+  if (const Status sized = CheckSize(png.width, png.height, bytes.size()); !sized) {
+    return sized.error();
+  }
+  png.format = PNG_FORMAT_RGBA;
+  Image image = NewImage(png.width, png.height);
+  if (!png_image_finish_read(&png, nullptr, image.texels.data(), 0, nullptr)) {
+    return Refused(Printable(png.message));
+  }
+  return image;
+}
+
+Result<Image> DecodeJpeg(std::string_view bytes) {
+  const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), &tjDestroy);
+  if (!decoder) return Refused("libjpeg-turbo does not start");
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const auto failed = [&] { return Refused(Printable(tjGetErrorStr2(decoder.get()))); };
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling,
+                          &colours) != 0) {
+    return failed();
+  }
+  const auto side = [](int x) { return static_cast<std::uint64_t>(x); };
+  if (const Status sized = CheckSize(side(width), side(height), bytes.size()); !sized) {
+    return sized.error();
+  }
+  Image image = NewImage(side(width), side(height));
+  if (tjDecompress2(decoder.get(), data, bytes.size(),
+                    reinterpret_cast<unsigned char*>(image.texels.data()), width, 0, height,
+                    TJPF_RGBA, 0) != 0) {
+    return failed();
+  }
+  return image;
+}
+
+}  // namespace
+
+Result<Image> DecodeImage(std::string_view bytes) {
+  Result<Image> image = bytes.starts_with("\x89PNG")        ? DecodePng(bytes)
+                        : bytes.starts_with("\xff\xd8\xff") ? DecodeJpeg(bytes)
+                                                            : Refused("neither a PNG nor a JPEG");
+  if (image) ToNumbers(image.value());
+  return image;
+}
+
+Result<std::shared_ptr<const Image>> ImageCache::Load(const std::string& from,
+                                                      const std::string& reference,
+                                                      SceneFiles& files) {
+  const Result<std::string> path = files.Resolve(from, reference);
+  if (!path) return Refused(fmt::format("{}: {}", Printable(reference), path.error().message));
+  std::shared_ptr<const Image>& image = images_[path.value()];
+  if (image) return image;
+  const Result<std::string> bytes = ReadWholeFile(path.value());
+  if (!bytes) return bytes.error();
+  Result<Image> decoded = DecodeImage(bytes.value());
+  if (!decoded)
+    return Refused(fmt::format("{}: {}", Printable(reference), decoded.error().message));
+  decoded.value().name = std::filesystem::path(path.value()).filename().string();
+  image = std::make_shared<const Image>(std::move(decoded).value());
+  return image;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,21 @@
+// NFF, the Neutral File Format of Haines' Standard Procedural Databases ("A Proposal for Standard
+// Graphics Environments", IEEE CG&A 7(11), 1987).
+#ifndef SHEAF_FORMATS_NFF_H_
+#define SHEAF_FORMATS_NFF_H_
+
+#include <string>
+#include <string_view>
+
+#include "src/core/error.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+// Background, view (as the camera "nff" and the picture's size), lights, fills, cones and cylinders
+// (as `cone_sides` smooth quads without caps), spheres, polygons and patches. What docs/formats.md
+// says of materials and lights holds. Errors are kScene, `name:line: what`.
+Result<Scene> ParseNff(std::string_view text, const std::string& name, int cone_sides);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_NFF_H_

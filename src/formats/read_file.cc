@@ -1,0 +1,65 @@
+#include "src/formats/read_file.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "src/formats/printable.h"
+
+namespace sheaf {
+namespace {
+
+Error SystemError(const std::string& path, std::string_view what, int code) {
+  return InputError(path, fmt::format("{}: {}", what, std::generic_category().message(code)));
+}
+
+std::string SizeText(std::size_t bytes) { return fmt::format("{} GiB", bytes >> 30); }
+
+}  // namespace
+
+Error InputError(const std::string& path, std::string_view what) {
+  return {ErrorKind::kInputOutput, fmt::format("{}: {}", PrintablePath(path), what)};
+}
+
+Error SceneError(const std::string& path, std::string_view what) {
+  return {ErrorKind::kScene, fmt::format("{}: {}", PrintablePath(path), what)};
+}
+
+Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view what) {
+  return {ErrorKind::kScene, fmt::format("{}:{}: {}", PrintablePath(path), line, what)};
+}
+
+Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes) {
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  if (!file) return SystemError(path, "cannot open", errno);
+  // The size is only a hint, since pipes have none; the limit holds while reading.
+  struct stat status {};
+  std::string text;
+  std::size_t expected = 0;
+  if (fstat(fileno(file.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
+    expected = std::min(static_cast<std::size_t>(status.st_size), max_bytes);
+  }
+  // One read of all that is expected, and small ones for what a pipe still has.
+  std::size_t size = 0;
+  for (;;) {
+    const std::size_t step = std::max<std::size_t>(expected - std::min(size, expected), 1 << 16);
+    text.resize(size + step);
+    const std::size_t count = std::fread(text.data() + size, 1, step, file.get());
+    size += count;
+    text.resize(size);
+    if (size > max_bytes) return InputError(path, "larger than " + SizeText(max_bytes));
+    if (count == 0) break;
+  }
+  if (std::ferror(file.get())) return SystemError(path, "cannot read", errno);
+  return text;
+}
+
+}  // namespace sheaf

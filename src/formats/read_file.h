@@ -1,0 +1,28 @@
+// Whole files as bytes, and errors that name them.
+#ifndef SHEAF_FORMATS_READ_FILE_H_
+#define SHEAF_FORMATS_READ_FILE_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "src/core/error.h"
+
+namespace sheaf {
+
+// `path: what`, of kInputOutput and of kScene.
+Error InputError(const std::string& path, std::string_view what);
+Error SceneError(const std::string& path, std::string_view what);
+// `path:line: what`, of kScene.
+Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view what);
+
+inline constexpr std::size_t kMaxTextBytes = std::size_t{1} << 30;
+inline constexpr std::size_t kMaxModelBytes = std::size_t{1} << 34;
+
+// The bytes of a file or a pipe; memory grows with what is really there. kInputOutput where it
+// cannot be read or is larger than `max_bytes`.
+Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes = kMaxModelBytes);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_READ_FILE_H_

@@ -1,0 +1,61 @@
+#include "src/formats/scene_mesh.h"
+
+#include <fmt/format.h>
+
+#include "src/formats/scene_values.h"
+
+namespace sheaf {
+namespace {
+
+template <typename Vector>
+void ReadVectors(const JsonCursor& list, const NumberRange& range, std::string_view expected,
+                 std::vector<Vector>* out) {
+  list.ForEachElement([&](const JsonCursor& element) {
+    Vector vector(0);
+    if (const auto numbers = element.ReadTuple<Vector::length()>(expected)) {
+      for (int i = 0; i < Vector::length(); ++i) {
+        double number = 0;
+        (*numbers)[static_cast<std::size_t>(i)].Read(range, &number);
+        vector[i] = static_cast<float>(number);
+      }
+    }
+    out->push_back(vector);
+  });
+}
+
+}  // namespace
+
+Mesh ReadMesh(const JsonCursor& value) {
+  Mesh mesh;
+  JsonObject object(value);
+  ReadVectors(object.Required("positions"), kCoordinate, "[x, y, z]", &mesh.positions);
+  const auto of_vertices = [&](const char* key, const NumberRange& range, std::string_view expected,
+                               auto* out) {
+    const JsonCursor list = object.Optional(key);
+    if (!list.present()) return;
+    ReadVectors(list, range, expected, out);
+    if (out->size() != mesh.positions.size()) {
+      list.Fail(fmt::format("{} elements for {} positions", out->size(), mesh.positions.size()));
+    }
+  };
+  of_vertices("normals", kCoordinate, "[x, y, z]", &mesh.normals);
+  of_vertices("uv", kCoordinate, "[u, v]", &mesh.uv);
+  of_vertices("colours", kStrength, "[r, g, b]", &mesh.colours);
+  const double last = static_cast<double>(mesh.positions.size()) - 1;
+  const std::string text = fmt::format("an integer in [0, {}]", last);
+  object.Required("triangles").ForEachElement([&](const JsonCursor& element) {
+    std::array<std::uint32_t, 3> triangle{};
+    if (const auto corners = element.ReadTuple<3>("3 positions by number")) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        int corner = 0;
+        (*corners)[i].ReadInteger({0, last, text}, &corner);
+        triangle[i] = static_cast<std::uint32_t>(corner);
+      }
+    }
+    mesh.triangles.push_back(triangle);
+  });
+  object.Finish();
+  return mesh;
+}
+
+}  // namespace sheaf

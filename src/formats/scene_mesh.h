@@ -1,0 +1,14 @@
+// Reads a mesh that stands in a scene file itself.
+#ifndef SHEAF_FORMATS_SCENE_MESH_H_
+#define SHEAF_FORMATS_SCENE_MESH_H_
+
+#include "src/formats/json_cursor.h"
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+Mesh ReadMesh(const JsonCursor& value);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_SCENE_MESH_H_
