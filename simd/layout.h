@@ -110,13 +110,14 @@ struct SurfaceFields {
   Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
   Field<std::uint32_t> ray;     // position in the ray stream
 
+  // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
       &SurfaceFields::position_x, &SurfaceFields::position_y, &SurfaceFields::position_z,
       &SurfaceFields::normal_x, &SurfaceFields::normal_y, &SurfaceFields::normal_z,
-      &SurfaceFields::face_x, &SurfaceFields::face_y, &SurfaceFields::face_z,
       &SurfaceFields::direction_x, &SurfaceFields::direction_y, &SurfaceFields::direction_z,
-      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::tint_r, &SurfaceFields::tint_g,
-      &SurfaceFields::tint_b, &SurfaceFields::offset, &SurfaceFields::source, &SurfaceFields::ray);
+      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::offset, &SurfaceFields::source,
+      &SurfaceFields::ray, &SurfaceFields::face_x, &SurfaceFields::face_y, &SurfaceFields::face_z,
+      &SurfaceFields::tint_r, &SurfaceFields::tint_g, &SurfaceFields::tint_b);
 };
 
 // Linear RGB, one an element.

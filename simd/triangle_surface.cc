@@ -69,43 +69,9 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     const auto facing = [&](W n) HWY_ATTR {
       return Narrow<Real>(hn::IfThenElse(inside_wide, hn::Neg(n), n));
     };
-    const auto face_x = facing(nx), face_y = facing(ny), face_z = facing(nz);
-    auto normal_x = face_x, normal_y = face_y, normal_z = face_z;
-    const auto vertex_mean = [&](const Real* const(&values)[3][3], int axis) HWY_ATTR {
-      return mean(Widen(of_local(values[0][axis])), Widen(of_local(values[1][axis])),
-                  Widen(of_local(values[2][axis])));
-    };
-    if (needs & kNeedsNormals) {
-      if (triangles.normal[0][0]) {
-        W sx = vertex_mean(triangles.normal, 0), sy = vertex_mean(triangles.normal, 1),
-          sz = vertex_mean(triangles.normal, 2);
-        // False for NaN too: lanes past the count may hold anything.
-        const auto is_smooth = hn::Gt(Dot(dw, sx, sy, sz, sx, sy, sz), hn::Zero(dw));
-        NormalizeWide(dw, sx, sy, sz);
-        const auto turn =
-            hn::Xor(hn::Lt(Dot(dw, sx, sy, sz, nx, ny, nz), hn::Zero(dw)), inside_wide);
-        const auto on_side = [&](W s, W n) HWY_ATTR {
-          const W face = hn::IfThenElse(inside_wide, hn::Neg(n), n);
-          return Narrow<Real>(hn::IfThenElse(is_smooth, hn::IfThenElse(turn, hn::Neg(s), s), face));
-        };
-        normal_x = on_side(sx, nx), normal_y = on_side(sy, ny), normal_z = on_side(sz, nz);
-      }
-      hn::StoreU(face_x, dn, surfaces.face_x + i);
-      hn::StoreU(face_y, dn, surfaces.face_y + i);
-      hn::StoreU(face_z, dn, surfaces.face_z + i);
-    }
-    hn::StoreU(normal_x, dn, surfaces.normal_x + i);
-    hn::StoreU(normal_y, dn, surfaces.normal_y + i);
-    hn::StoreU(normal_z, dn, surfaces.normal_z + i);
-    if (needs & kNeedsTint) {
-      const auto one = hn::Set(dn, Real(1));
-      const auto tint = [&](int channel) HWY_ATTR {
-        return triangles.colour[0][0] ? Narrow<Real>(vertex_mean(triangles.colour, channel)) : one;
-      };
-      hn::StoreU(tint(0), dn, surfaces.tint_r + i);
-      hn::StoreU(tint(1), dn, surfaces.tint_g + i);
-      hn::StoreU(tint(2), dn, surfaces.tint_b + i);
-    }
+    hn::StoreU(facing(nx), dn, surfaces.normal_x + i);
+    hn::StoreU(facing(ny), dn, surfaces.normal_y + i);
+    hn::StoreU(facing(nz), dn, surfaces.normal_z + i);
     hn::StoreU(direction_x, dn, surfaces.direction_x + i);
     hn::StoreU(direction_y, dn, surfaces.direction_y + i);
     hn::StoreU(direction_z, dn, surfaces.direction_z + i);

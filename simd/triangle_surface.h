@@ -6,10 +6,10 @@
 
 namespace sheaf::simd {
 
-// Writes surfaces[0, batch.count) from the batch's rays, hits and triangles. Left alone are u and v
-// unless `needs` has kNeedsCoordinates, the face unless it has kNeedsNormals (the normal then is
-// the face's) and the tint unless it has kNeedsTint. Bits: as sheaf::scalar::TriangleSurface. Reads
-// and writes PaddedCount(batch.count) lanes.
+// Writes surfaces[0, batch.count) from the batch's rays, hits and triangles: with the face's
+// normal, and without a face or a tint, which BlendVertices adds. u and v are left alone unless
+// `needs` has kNeedsCoordinates. Bits: as sheaf::scalar::TriangleSurface of triangles without
+// normals. Reads and writes PaddedCount(batch.count) lanes.
 template <typename Real>
 void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
                       const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,

@@ -385,6 +385,138 @@ TEST_CASE("--aov heat shows rays and lanes of each tile") {
   CHECK(Contains(clash.err, "same path"));
 }
 
+// ---- Models, parts, conversions ----
+
+constexpr char kTriangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+TEST_CASE("a model alone renders, from where the command line says") {
+  const Workspace work;
+  WriteText(work / "a.obj", kTriangle);
+  const auto render = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"render", work / "a.obj", "-o",   work / "a.pfm",
+                                          "-q",     "--size",       "40x30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = work.Run(arguments);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.code == 0);
+    return ReadText(work / "a.pfm");
+  };
+  const std::string usual = render({});
+  const std::string moved = render({"--eye", "0,0,3", "--look-at", "0,0,0", "--fov", "20"});
+  CHECK(usual != moved);
+  CHECK(work.Run({"render", work / "a.obj", "-o", work / "a.pfm", "--eye", "1,2"}).code == 2);
+  CHECK(work.Run({"render", work / "a.obj", "-o", work / "a.pfm", "--eye", "0,0,0", "--look-at",
+                  "0,0,0"})
+            .code == 2);
+}
+
+TEST_CASE("a bad model is one line and code 3, and leaves no picture") {
+  const Workspace work;
+  WriteText(work / "a.obj", std::string(kTriangle) + "f 1 2 9\n");
+  const Outcome outcome = work.Run({"render", work / "a.obj", "-o", work / "a.png"});
+  CHECK(outcome.code == 3);
+  CHECK(outcome.err == (work / "a.obj") + ":5: vertex 9 of 3\n");
+  CHECK(work.Files() == std::vector<std::string>{"a.obj"});
+}
+
+TEST_CASE("files outside the scene's folder need --allow-outside") {
+  const Workspace work;
+  WriteText(work / "a.obj", kTriangle);
+  fs::create_directory(work / "in");
+  WriteText(work / "in/a.json",
+            R"({"objects": [{"mesh": "../a.obj"}],
+                "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0]}]})");
+  const Outcome refused = work.Run({"check", work / "in/a.json"});
+  CHECK(refused.code == 3);
+  CHECK(Contains(refused.err, ":1: /objects/0/mesh: ../a.obj: lies outside the scene's folder"));
+  CHECK(work.Run({"check", work / "in/a.json", "--allow-outside"}).code == 0);
+}
+
+TEST_CASE("check reads every scene, and says what it would skip") {
+  const Workspace work;
+  WriteText(work / "bad.obj", "v 0 0\n");
+  const Outcome outcome = work.Run({"check", work / "bad.obj", kScene});
+  CHECK(outcome.code == 3);
+  CHECK(LineCount(outcome.err) == 1);
+  CHECK(Contains(outcome.out, "crystal-ball.json: sound: 3 objects"));
+  CHECK(Contains(outcome.out, "skipped: "));
+  const Outcome listed = work.Run({"check", kScene, "--json"});
+  CHECK(listed.code == 0);
+  CHECK(json::parse(listed.out)[0]["triangles"] == 2);
+}
+
+TEST_CASE("parts of a picture, merged, are the whole to the bit") {
+  const Workspace work;
+  const auto render = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"render", kScene,   "-o",   work / name,
+                                          "-q",     "--size", "61x47"};
+    if (name.ends_with(".exr")) arguments.insert(arguments.end(), {"--aov", "depth,normal,id"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    REQUIRE(work.Run(arguments).code == 0);
+  };
+  for (const std::string ending : {".png", ".pfm", ".exr"}) {
+    CAPTURE(ending);
+    std::vector<std::string> merge = {"merge", "-o", work / ("merged" + ending)};
+    for (const char* part : {"1", "2", "3"}) {
+      render("part" + (part + ending), {"--tile", std::string(part) + "/3"});
+      merge.push_back(work / ("part" + (part + ending)));
+    }
+    REQUIRE(work.Run(merge).code == 0);
+    render("whole" + ending, {});
+    const Outcome same = work.Run(
+        {"compare", work / ("whole" + ending), work / ("merged" + ending), "--fail", "largest=0"});
+    CAPTURE(same.out);
+    CHECK(same.code == 0);
+    // A gap and an overlap.
+    merge.pop_back();
+    if (ending != ".pfm") CHECK(work.Run(merge).code == 2);
+    merge.push_back(merge.back());
+    if (ending != ".pfm") CHECK(work.Run(merge).code == 2);
+  }
+  // Crops know their place as well.
+  render("left.png", {"--crop", "0,0,20,47"});
+  render("right.png", {"--crop", "20,0,61,47"});
+  REQUIRE(work.Run({"merge", work / "right.png", work / "left.png", "-o", work / "m.png"}).code ==
+          0);
+  CHECK(work.Run({"compare", work / "whole.png", work / "m.png", "--fail", "largest=0"}).code == 0);
+  CHECK(work.Run({"render", kScene, "-o", work / "x.png", "--tile", "4/3"}).code == 2);
+  CHECK(work.Run({"render", kScene, "-o", work / "x.png", "--tile", "1/2", "--crop", "0,0,1,1"})
+            .code == 2);
+}
+
+TEST_CASE("layers lie beside a picture, or in it") {
+  const Workspace work;
+  const std::vector<std::string> layers = {"--aov", "depth,normal,albedo,id,heat", "-q", "--size",
+                                           "32x24"};
+  for (const char* name : {"a.png", "b.exr"}) {
+    std::vector<std::string> arguments = {"render", kScene, "-o", work / name};
+    arguments.insert(arguments.end(), layers.begin(), layers.end());
+    REQUIRE(work.Run(arguments).code == 0);
+  }
+  CHECK(work.Files() == std::vector<std::string>{"a.albedo.png", "a.depth.png", "a.heat.png",
+                                                 "a.id.png", "a.normal.png", "a.png", "b.exr"});
+  CHECK(work.Run({"render", kScene, "-o", work / "c.png", "--aov", "depth,width"}).code == 2);
+}
+
+TEST_CASE("convert keeps every bit that the format holds") {
+  const Workspace work;
+  REQUIRE(work.Run({"render", kScene, "-o", work / "a.exr", "-q", "--size", "40x30"}).code == 0);
+  REQUIRE(work.Run({"render", kScene, "-o", work / "a.pfm", "-q", "--size", "40x30"}).code == 0);
+  REQUIRE(work.Run({"convert", work / "a.exr", "-o", work / "b.pfm"}).code == 0);
+  CHECK(ReadText(work / "a.pfm") == ReadText(work / "b.pfm"));
+  REQUIRE(work.Run({"convert", work / "a.exr", "-o", work / "a.png", "--bits", "16"}).code == 0);
+  CHECK(work.Run({"compare", work / "a.exr", work / "a.png", "--fail", "largest=0.00001"}).code ==
+        0);
+  REQUIRE(work.Run({"convert", kScene, "-o", work / "a.json"}).code == 0);
+  REQUIRE(
+      work.Run({"render", work / "a.json", "-o", work / "c.pfm", "-q", "--size", "40x30"}).code ==
+      0);
+  CHECK(ReadText(work / "a.pfm") == ReadText(work / "c.pfm"));
+  CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "x.json"}).code == 2);
+  CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "a.pfm"}).code == 2);
+  CHECK(work.Run({"convert", work / "none.pfm", "-o", work / "x.png"}).code == 4);
+}
+
 TEST_CASE("without arguments the help goes to stderr, and the code is 2") {
   const Outcome nothing = Workspace().Run({});
   CHECK(nothing.code == 2);

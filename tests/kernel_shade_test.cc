@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "random_scene.h"
+#include "simd/blend_vertices.h"
 #include "simd/face_light.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
@@ -239,6 +240,7 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
         } else {
           simd::TriangleSurfaces(geometry.triangles, rays.view(), hits.view(), batch, kNeedsAll,
                                  surfaces.output());
+          simd::BlendVertices(geometry.triangles, hits.view(), batch, kNeedsAll, surfaces.output());
         }
         const auto got = surfaces.view();
         for (std::uint32_t i = 0; i < count; ++i) {

@@ -16,6 +16,7 @@
 #include "src/formats/nff.h"
 #include "src/formats/ply.h"
 #include "src/formats/png.h"
+#include "src/formats/pov_ray.h"
 #include "src/formats/read_scene.h"
 #include "src/formats/triangulate.h"
 #include "src/scalar/spawn.h"
@@ -850,6 +851,48 @@ TEST_CASE("SPD: Haines' counts at 513x513") {
     const double traced = static_cast<double>(rays.reflected + rays.refracted - rays.beyond_depth);
     CHECK(is_near(has_glass ? traced / 2 : traced, wanted.reflected));
     if (wanted.shadow > 0) CHECK(is_near(static_cast<double>(rays.shadow), wanted.shadow));
+  }
+}
+
+// Silhouettes, shadows and reflections: pixels that differ by more than a fifth lie on edges alone.
+TEST_CASE("SPD: pictures are POV-Ray's") {
+  if (!HasPovRay()) {
+    MESSAGE("skipped: povray is not installed");
+    return;
+  }
+  for (const char* name : {"balls", "tetra", "mount"}) {
+    const std::string path = DataFolder() + "/spd/" + name + ".nff";
+    if (IsSkipped(path)) continue;
+    CAPTURE(name);
+    const Scene scene = ReadOrFail(path);
+    RenderOptions options;
+    options.width = options.height = 256;
+    options.max_depth = scene.settings.max_depth;
+    const Film ours = RenderOrFail(scene, scene.cameras[0], options);
+    const auto theirs =
+        RenderWithPovRay(scene, scene.cameras[0], 256, 256, "-A", PovPicture::kRead);
+    REQUIRE(theirs.ok());
+    int differing = 0, silhouettes = 0;
+    for (int y = 0; y < 256; ++y) {
+      for (int x = 0; x < 256; ++x) {
+        const float *a = ours.pixel(x, y), *b = theirs.value().film.pixel(x, y);
+        double most = 0;
+        bool is_background[2] = {true, true};
+        for (int c = 0; c < 3; ++c) {
+          const auto shown = [](float v) { return std::min(static_cast<double>(v), 1.0); };
+          const double background = scene.settings.background[c];
+          most = std::max(most, std::abs(shown(a[c]) - shown(b[c])));
+          is_background[0] &= std::abs(shown(a[c]) - background) < 2e-3;
+          is_background[1] &= std::abs(shown(b[c]) - background) < 2e-3;
+        }
+        differing += most > 0.2;
+        silhouettes += is_background[0] != is_background[1];
+      }
+    }
+    MESSAGE(name, ": ", differing, " pixels of 65536 differ by more than 0.2, ", silhouettes,
+            " show background in one alone");
+    CHECK(differing <= 65536 * 0.02);
+    CHECK(silhouettes <= 65536 * 0.005);
   }
 }
 

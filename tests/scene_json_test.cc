@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "src/core/atomic_file.h"
+#include "src/formats/png.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -341,13 +343,14 @@ TEST_CASE("every mistake is named, with its line and path") {
       {Shape(R"("sphere": {"center": [0, 0, 2e30], "radius": 1})"),
        "f:1: /objects/0/sphere/center/2: expected a number in [-1e30, 1e30], found 2e+30"},
       {Shape(R"("name": "x")"),
-       "f:1: /objects/0: missing key; give one of \"sphere\", \"quad\", \"triangle\", \"mesh\", \"include\""},
+       "f:1: /objects/0: missing key; give one of \"sphere\", \"quad\", \"triangle\", \"mesh\", "
+       "\"include\""},
       {Shape(R"("quad": {}, "sphere": {"center": [0, 0, 0], "radius": 1})"),
        "f:1: /objects/0/sphere: conflicts with \"quad\"; give one of \"sphere\", \"quad\", "
-       "\"triangle\""},
+       "\"triangle\", \"mesh\", \"include\""},
       {Shape(R"("sphere": {"center": [0, 0, 0], "radius": 1}, "quad": {})"),
        "f:1: /objects/0/quad: conflicts with \"sphere\"; give one of \"sphere\", \"quad\", "
-       "\"triangle\""},
+       "\"triangle\", \"mesh\", \"include\""},
       {Object(R"("sphere": {"center": [0, 0, 0], "radius": 1})"),
        "f:1: /objects/0/material: missing key"},
       {Object(R"("sphere": {"center": [0, 0, 0], "radius": 1}, "material": "Gals")"),
@@ -624,8 +627,18 @@ json CompleteScene() {
       {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3]}},
        "ambient": 0.1, "kd": 0.5, "ks": 0.5, "shininess": 10, "reflect": 0.5,
        "transmit": [0.1, 0.2, 0.3], "ior": 1.5},
-      {"name": "plain", "base_colour": [1, 1, 1]}],
+      {"name": "plain", "base_colour": [1, 1, 1], "emission": 0.5},
+      {"name": "picture", "base_colour": {"texture": {"image": "schema-texture.png",
+       "wrap": ["mirror", "clamp"], "filter": "nearest", "srgb": false, "factor": 0.5}}}],
     "objects": [
+      {"name": "mesh", "material": "picture",
+       "mesh": {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "normals": [[0, 0, 1], [0, 0, 1],
+                [0, 0, 1]], "uv": [[0, 0], [1, 0], [0, 1]],
+                "colours": [[1, 1, 1], [0.5, 0, 0], [0, 0, 1]], "triangles": [[0, 1, 2]]},
+       "transform": [{"translate": [1, 2, 3]}, {"rotate": {"axis": [0, 1, 0], "degrees": 30}},
+                     {"scale": [1, 2, 3]},
+                     {"matrix": [[1, 0, 0, 5], [0, 1, 0, 6], [0, 0, 2, 7]]}]},
+      {"include": "schema-part.json", "transform": {"scale": 2}},
       {"name": "a", "sphere": {"center": [0, 0, 0], "radius": 1}, "material": "m"},
       {"name": "b", "quad": {"corners": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]},
        "material": "m"},
@@ -635,6 +648,8 @@ json CompleteScene() {
       {"name": "l", "point": {"position": [9, 8, 7], "falloff": "linear"}, "colour": [1, 1, 0.5],
        "E0": 100, "reference": [0, 0, 0], "shadows": false},
       {"point": {"position": [9, 8, 7], "falloff": [1, 2, 3]}, "intensity": 5},
+      {"spot": {"position": [9, 8, 7], "direction": [0, -1, 0.5], "inner": 5, "outer": 30,
+                "falloff": "constant"}, "intensity": 2},
       {"directional": {"direction": [0, -1, 1]}, "E0": 1},
       {"directional": {"direction": [1, -1, 1]}, "intensity": 1}],
     "cameras": [
@@ -645,11 +660,29 @@ json CompleteScene() {
 
 // What only the reader can know.
 bool IsBeyondSchema(const std::string& message) {
-  for (const char* part :
-       {": no material \"", ": no camera \"", " exists already, from line ", "gives no direction",
-        "looks at its own eye", "parallel to up", "the quad has no area", "not in one plane",
-        "do not form a convex quad", "where E0 is not defined", "the intensity would be",
-        "one of the terms must be"}) {
+  for (const char* part : {": no material \"",
+                           ": no camera \"",
+                           " exists already, from line ",
+                           "gives no direction",
+                           "looks at its own eye",
+                           "parallel to up",
+                           "the quad has no area",
+                           "not in one plane",
+                           "do not form a convex quad",
+                           "where E0 is not defined",
+                           "the intensity would be",
+                           "one of the terms must be",
+                           "cannot open",
+                           "cannot read",
+                           "lies outside",
+                           "must end in",
+                           "no name of a file",
+                           "a scale of 0",
+                           "is singular",
+                           "inner must be below",
+                           "elements for",
+                           "expected an integer in [0, ",
+                           "neither a PNG nor"}) {
     if (message.find(part) != message.npos) return true;
   }
   return false;
@@ -723,6 +756,11 @@ TEST_CASE("schema and reader know the same keys, types and ranges") {
   const json schema = LoadSchema();
   SchemaValidator validator(schema);
   const json complete = CompleteScene();
+  // The files that it names.
+  REQUIRE(WritePng({1, 1, {255, 0, 0}}, Transfer::kLinear, "schema-texture.png").ok());
+  REQUIRE(WriteFileWhole("schema-part.json",
+                         R"({"cameras": [{"name": "p", "eye": [0, 0, 9], "look_at": [0, 0, 0]}]})")
+              .ok());
   REQUIRE(Outcome(complete.dump(1)) == "ok");
   REQUIRE(validator.Validate(complete));
 

@@ -56,6 +56,14 @@ std::size_t TerminalColumns() {
 
 }  // namespace
 
+ReadingNotice::ReadingNotice(ProgressStyle style, const std::string& path) : style_(style) {
+  if (style_ == ProgressStyle::kBar) PrintError(fmt::format("reading {}", path));
+}
+
+ReadingNotice::~ReadingNotice() {
+  if (style_ == ProgressStyle::kBar) PrintError("\r\x1b[K");
+}
+
 ProgressStyle AutomaticProgressStyle() {
   const char* terminal = std::getenv("TERM");
   const bool draws = terminal != nullptr && std::string_view(terminal) != "dumb";
@@ -102,6 +110,11 @@ void FrameWatch::StopWatching() {
 }
 
 void FrameWatch::DrawBar(double seconds) {
+  if (progress_.stage.load(std::memory_order_relaxed) == RenderStage::kBuilding) {
+    PrintError(fmt::format("\r{}  building the tree  {}\x1b[K", label_, Duration(seconds)));
+    bar_drawn_ = true;
+    return;
+  }
   const Pace pace = PaceOf(progress_.pixels_done.load(std::memory_order_relaxed), pixels_, seconds);
   const std::string text = Describe(pace);
   // The last column stays free: writing there wraps the line on some terminals.

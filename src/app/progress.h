@@ -22,6 +22,18 @@ enum class ProgressStyle {
 // kBar where stderr is a terminal that can move its cursor, else kPlain.
 ProgressStyle AutomaticProgressStyle();
 
+// Says on a terminal that a file is being read, as long as it lives.
+class ReadingNotice {
+ public:
+  ReadingNotice(ProgressStyle style, const std::string& path);
+  ReadingNotice(const ReadingNotice&) = delete;
+  ReadingNotice& operator=(const ReadingNotice&) = delete;
+  ~ReadingNotice();
+
+ private:
+  const ProgressStyle style_;
+};
+
 // Watches one frame from construction to Finish() or destruction, in a thread that wakes ten times
 // a second. It forwards PendingSignal() to the renderer in every style.
 class FrameWatch {

@@ -319,7 +319,11 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
 Status RunRender(const RenderRequest& request) {
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckRequest(request); !sound) return sound;
-  const Result<Scene> scene = OpenScene(request.scene, request.options);
+  const ProgressStyle style = ChooseProgressStyle(request);
+  const Result<Scene> scene = [&] {
+    const ReadingNotice notice(style, request.scene);
+    return OpenScene(request.scene, request.options);
+  }();
   if (!scene) return scene.error();
   const Result<RenderOptions> options = MergeOptions(request, scene.value().settings);
   if (!options) return options.error();
@@ -328,7 +332,6 @@ Status RunRender(const RenderRequest& request) {
   if (const Status apart = CheckOverwriting(request, frames.value()); !apart) return apart;
 
   CatchInterrupts();
-  const ProgressStyle style = ChooseProgressStyle(request);
   const std::size_t count = frames.value().size();
   std::vector<FrameRecord> records;
   for (const Frame& frame : frames.value()) {

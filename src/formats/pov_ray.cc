@@ -33,7 +33,9 @@ std::string Finish(const Scene& scene, const Material& material) {
       fmt::format("finish {{ ambient rgb {} diffuse {} specular {} roughness {}", Vector(ambient),
                   material.kd, material.ks, 1 / std::max(material.shininess, 1e-3));
   if (Transmits(material)) {
-    finish += " reflection { 0, 1 fresnel on } conserve_energy";
+    // From what the material reflects of itself to that and all that meets the glass.
+    finish += fmt::format(" reflection {{ rgb {}, rgb 1 fresnel on }} conserve_energy",
+                          Vector(material.reflect));
   } else if (glm::length(material.reflect) > 0) {
     finish += fmt::format(" reflection {{ rgb {} }}", Vector(material.reflect));
   }
@@ -61,7 +63,10 @@ std::string Pigment(const Material& material, const Quad* quad) {
   }
   const auto* texture = std::get_if<Texture>(&material.base_colour);
   const Colour colour = texture ? texture->factor : std::get<Colour>(material.base_colour);
-  return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), material.transmit.x);
+  // Energy is conserved: what is reflected in any case is taken off once.
+  const double transmit =
+      std::min(material.transmit.x / std::max(1 - material.reflect.x, 1e-6), 1.0);
+  return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), transmit);
 }
 
 std::string TextureText(const Scene& scene, const Material& material, const Quad* quad) {

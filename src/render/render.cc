@@ -257,6 +257,7 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
                         static_cast<Real>(options.min_weight)};
   if (options.skips == Skips::kOff) frame.tree.skips_boxes = frame.tree.node_count == 0;
   stats.compile_seconds = SecondsSince(start);
+  progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
   stats.spheres = compiled.sphere_count;
   stats.triangles = compiled.triangle_count;
   stats.primitives = compiled.sphere_count + compiled.triangle_count;

@@ -114,7 +114,10 @@ struct RenderStats {
 };
 
 // Shared with other threads while a frame renders: read the progress, ask for a stop.
+enum class RenderStage { kBuilding, kRendering };
+
 struct RenderProgress {
+  std::atomic<RenderStage> stage{RenderStage::kBuilding};  // the tree first
   std::atomic<std::uint64_t> pixels_done{0};
   std::atomic<bool> stop{false};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "simd/blend_vertices.h"
 #include "simd/face_light.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
@@ -129,6 +130,10 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
   } else {
     simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
                            surfaces_.output());
+    if (material.needs & (kNeedsNormals | kNeedsTint)) {
+      simd::BlendVertices(frame_.geometry.triangles, hits_.view(), bin.batch, material.needs,
+                          surfaces_.output());
+    }
   }
   const bool has_faces = bin.shape == ShapeKind::kTriangle && (material.needs & kNeedsNormals) != 0;
   const auto surfaces = has_faces ? surfaces_.view() : WithoutFaces(surfaces_.view());

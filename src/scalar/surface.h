@@ -93,7 +93,7 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
     if (Dot(smooth, smooth) > 0) {  // not NaN either
       const Vec3<W> unit = NormalizeWide(smooth);
       // Files disagree on the side that normals show: it is the face's, which faces the ray.
-      const bool turn = (Dot(unit, front) < 0) != inside;
+      const bool turn = Dot(unit, surface.face.template To<W>()) < 0;
       surface.normal = (turn ? -unit : unit).template To<Real>();
     }
   }

@@ -1,0 +1,98 @@
+#include "simd/blend_vertices.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/blend_vertices.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::simd::HWY_NAMESPACE {
+
+template <typename Real>
+void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
+                        const HitBatch& batch, std::uint32_t needs,
+                        const SurfaceOutput<Real>& surfaces) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const IdLanes<NarrowLanes<Real>> di;
+  using W = hn::Vec<WideLanes<Real>>;
+  using Wide = hn::TFromD<WideLanes<Real>>;
+  const bool has_normals = triangles.normal[0][0] != nullptr;
+  const bool has_colours = triangles.colour[0][0] != nullptr;
+  for (std::uint32_t i = 0; i < batch.count; i += LaneCount(dn)) {
+    // Lanes past the count gather element 0.
+    const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
+    const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
+    const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
+    const std::uint32_t wanted = batch.count - i;
+    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
+    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
+    const auto of_ray = [&](const Real* array) HWY_ATTR {
+      return Widen(Fetch(dn, ray_pattern, array, batch.ray[i], ray));
+    };
+    const auto of_local = [&](const Real* array) HWY_ATTR {
+      return Widen(Fetch(dn, local_pattern, array, batch.local[i], local));
+    };
+    const W w1 = of_ray(hits.u), w2 = of_ray(hits.v);
+    const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
+    const auto mean = [&](const Real* const(&values)[3][3], int axis) HWY_ATTR {
+      return hn::Add(
+          hn::Add(hn::Mul(of_local(values[0][axis]), w0), hn::Mul(of_local(values[1][axis]), w1)),
+          hn::Mul(of_local(values[2][axis]), w2));
+    };
+    if (needs & kNeedsNormals) {
+      const auto face_x = hn::LoadU(dn, surfaces.normal_x + i);
+      const auto face_y = hn::LoadU(dn, surfaces.normal_y + i);
+      const auto face_z = hn::LoadU(dn, surfaces.normal_z + i);
+      hn::StoreU(face_x, dn, surfaces.face_x + i);
+      hn::StoreU(face_y, dn, surfaces.face_y + i);
+      hn::StoreU(face_z, dn, surfaces.face_z + i);
+      if (has_normals) {
+        W x = mean(triangles.normal, 0), y = mean(triangles.normal, 1),
+          z = mean(triangles.normal, 2);
+        // False for NaN too: lanes past the count may hold anything.
+        const auto is_smooth = hn::Gt(Dot(dw, x, y, z, x, y, z), hn::Zero(dw));
+        NormalizeWide(dw, x, y, z);
+        const auto turn =
+            hn::Lt(Dot(dw, x, y, z, Widen(face_x), Widen(face_y), Widen(face_z)), hn::Zero(dw));
+        const auto store = [&](W n, decltype(face_x) face, Real* HWY_RESTRICT to) HWY_ATTR {
+          const W normal = hn::IfThenElse(turn, hn::Neg(n), n);
+          hn::StoreU(Narrow<Real>(hn::IfThenElse(is_smooth, normal, Widen(face))), dn, to + i);
+        };
+        store(x, face_x, surfaces.normal_x);
+        store(y, face_y, surfaces.normal_y);
+        store(z, face_z, surfaces.normal_z);
+      }
+    }
+    if (needs & kNeedsTint) {
+      const auto tint = [&](int channel) HWY_ATTR {
+        return has_colours ? Narrow<Real>(mean(triangles.colour, channel)) : hn::Set(dn, Real(1));
+      };
+      hn::StoreU(tint(0), dn, surfaces.tint_r + i);
+      hn::StoreU(tint(1), dn, surfaces.tint_g + i);
+      hn::StoreU(tint(2), dn, surfaces.tint_b + i);
+    }
+  }
+}
+SHEAF_NAME_KERNELS(BlendVertices);
+
+}  // namespace sheaf::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::simd {
+
+SHEAF_EXPORT(BlendVertices);
+
+template <typename Real>
+void BlendVertices(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
+                   const HitBatch& batch, std::uint32_t needs,
+                   const SurfaceOutput<Real>& surfaces) {
+  SHEAF_DISPATCH(Real, BlendVertices)(triangles, hits, batch, needs, surfaces);
+}
+SHEAF_INSTANTIATE(BlendVertices);
+
+}  // namespace sheaf::simd
+#endif  // HWY_ONCE
