@@ -7,7 +7,8 @@
 # Needs, once, on x86-64:
 #   dpkg --add-architecture arm64 && apt-get update
 #   apt-get install g++-aarch64-linux-gnu qemu-user-static \
-#       libhwy-dev:arm64 libtbb-dev:arm64 libpng-dev:arm64 libfmt-dev:arm64
+#       libhwy-dev:arm64 libtbb-dev:arm64 libpng-dev:arm64 libfmt-dev:arm64 \
+#       libtinyobjloader-dev:arm64 libtinygltf-dev:arm64 libturbojpeg0-dev:arm64
 # Where that is not installed it says so and exits with 77, as a skipped test does.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,12 +16,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 for tool in aarch64-linux-gnu-g++ qemu-aarch64-static; do
   command -v "$tool" >/dev/null || { echo "skipped: no $tool" >&2; exit 77; }
 done
-if [[ ! -e /usr/lib/aarch64-linux-gnu/libhwy.so && ! -e /usr/lib/aarch64-linux-gnu/libhwy.a ]]; then
-  echo "skipped: no libhwy-dev:arm64" >&2
-  exit 77
-fi
+for library in libhwy libtinyobjloader libtinygltf libturbojpeg; do
+  if ! compgen -G "/usr/lib/aarch64-linux-gnu/$library.*" >/dev/null; then
+    echo "skipped: no $library for arm64" >&2
+    exit 77
+  fi
+done
 
-cmake -S . -B build/aarch64 -G Ninja -DCMAKE_BUILD_TYPE=Release \
+PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig cmake -S . -B build/aarch64 -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
   -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_LIBRARY_ARCHITECTURE=aarch64-linux-gnu \
   -DSHEAF_BUILD_TESTS=OFF -DSHEAF_BUILD_BENCH=OFF

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "simd/target.h"
@@ -38,6 +39,11 @@ Error UnknownName(std::string_view option, std::string_view kind, const std::str
 }  // namespace
 
 Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+
+bool IsSameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
 
 std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
   std::vector<std::string> names = SplitAtCommas(text);

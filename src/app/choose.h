@@ -16,6 +16,9 @@ namespace sheaf {
 
 Error Usage(std::string message);  // of kind kUsage
 
+// Whether two paths name one file, there already or not.
+bool IsSameFile(const std::string& a, const std::string& b);
+
 // Names between commas, without a blank or a double among them.
 std::optional<std::vector<std::string>> ParseNames(const std::string& text);
 

@@ -18,11 +18,6 @@
 namespace sheaf {
 namespace {
 
-bool IsSameFile(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
 // ---- Scenes ----
 
 Status WriteImage(const Image& image, const std::string& path) {

@@ -67,6 +67,7 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   if (!result) return result.error();
   OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings)};
   if (const Status aimed = Aim(options, &opened.scene); !aimed) return aimed.error();
+  if (result.value().key_light == KeyLight::kAdded) AimKeyLight(&opened.scene);
   return opened;
 }
 

@@ -56,12 +56,6 @@ Status CheckRequest(const RenderRequest& request) {
   return Done{};
 }
 
-// Whether two paths name one file, there already or not.
-bool IsSameFile(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
 // No output may replace another file of the same run, the scene least of all.
 Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& frames) {
   const auto clash = [](const char* option, const std::string& path) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "src/formats/file_ending.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -16,13 +17,7 @@ namespace {
 enum class Format { kPng, kPfm, kExr };
 
 std::optional<Format> FormatOf(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string::npos) return std::nullopt;
-  std::string ending = path.substr(dot);
-  // Not std::tolower: it would follow the locale.
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = FileEnding(path);
   if (ending == ".png") return Format::kPng;
   if (ending == ".pfm") return Format::kPfm;
   if (ending == ".exr") return Format::kExr;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <new>
 
+#include "src/formats/file_ending.h"
 #include "src/formats/gltf.h"
 #include "src/formats/nff.h"
 #include "src/formats/obj.h"
@@ -24,12 +25,7 @@ namespace fs = std::filesystem;
 enum class Format { kJson, kNff, kObj, kPly, kGltf };
 
 std::optional<Format> FormatOf(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string::npos) return std::nullopt;
-  std::string ending = path.substr(dot);
-  for (char& c : ending) {  // not std::tolower, which follows the locale
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = FileEnding(path);
   if (ending == ".json") return Format::kJson;
   if (ending == ".nff") return Format::kNff;
   if (ending == ".obj") return Format::kObj;
@@ -70,27 +66,24 @@ class BoundsFinder {
   }
 };
 
-// Light from behind the camera's left shoulder.
 void AddKeyLight(Scene* scene) {
-  const Camera& camera = scene->cameras.front();
-  const Vec3d ahead = glm::normalize(camera.look_at - camera.eye);
-  const Vec3d right = glm::normalize(glm::cross(ahead, camera.up));
-  const Vec3d up = glm::cross(right, ahead);
   Light light;
   light.name = "key";
-  light.source = DirectionalLight{ahead + 0.6 * right - 0.9 * up};
   light.intensity = 0.8;
   scene->lights.push_back(light);
+  AimKeyLight(scene);
   scene->settings.ambient = Colour(1.0);
   scene->settings.background = Colour(0.8, 0.84, 0.9);
 }
 
-void Complete(Scene* scene) {
+KeyLight Complete(Scene* scene) {
   if (scene->cameras.empty()) {
     const SceneBounds bounds = BoundsOf(*scene).value_or(SceneBounds{Vec3d(-1), Vec3d(1)});
     scene->cameras.push_back(CameraThatFrames(bounds, {0, 1, 0}));
   }
-  if (scene->lights.empty()) AddKeyLight(scene);
+  if (!scene->lights.empty()) return KeyLight::kAbsent;
+  AddKeyLight(scene);
+  return KeyLight::kAdded;
 }
 
 }  // namespace
@@ -171,15 +164,24 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
     files.Enter(path);
     Result<Scene> scene = IsModelPath(path) ? ReadModel(path, files) : ReadSceneJson(path, files);
     if (!scene) return scene.error();
+    KeyLight key_light = KeyLight::kAbsent;
     if (IsModelPath(path)) {
-      Complete(&scene.value());
+      key_light = Complete(&scene.value());
       // Models of today are made for displays; Haines' are older than that.
       if (FormatOf(path) != Format::kNff) scene.value().settings.transfer = Transfer::kSrgb;
     }
-    return ReadSceneResult{std::move(scene).value(), files.warnings()};
+    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings()};
   } catch (const std::bad_alloc&) {
     return InputError(path, "not enough memory to read the file");
   }
+}
+
+void AimKeyLight(Scene* scene) {
+  const Camera& camera = scene->cameras.front();
+  const Vec3d ahead = glm::normalize(camera.look_at - camera.eye);
+  const Vec3d right = glm::normalize(glm::cross(ahead, camera.up));
+  const Vec3d up = glm::cross(right, ahead);
+  scene->lights.front().source = DirectionalLight{ahead + 0.6 * right - 0.9 * up};
 }
 
 std::optional<SceneBounds> BoundsOf(const Scene& scene) {

@@ -62,8 +62,11 @@ Result<Scene> ReadModel(const std::string& path, SceneFiles& files);
 inline constexpr double kModelAmbient = 0.25;
 Material PlainMaterial();
 
+enum class KeyLight { kAbsent, kAdded };
+
 struct ReadSceneResult {
   Scene scene;
+  KeyLight key_light = KeyLight::kAbsent;  // kAdded: the scene's first light
   std::vector<std::string> warnings;
 };
 
@@ -71,6 +74,9 @@ struct ReadSceneResult {
 // key light and white ambient light before a bright background. A malformed file is kScene, with
 // file and place; one that cannot be opened kInputOutput.
 Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options = {});
+
+// Turns an added key light so that it shines over the left shoulder of the first camera.
+void AimKeyLight(Scene* scene);
 
 // The smallest box around all objects; nothing where there are none.
 struct SceneBounds {
