@@ -567,6 +567,9 @@ TEST_CASE("glTF that is wrong") {
   refused([](json& g) { g["buffers"][0]["uri"] = "../outside.bin"; }, "outside the scene's folder");
   refused([](json& g) { g["buffers"][0]["uri"] = "missing.bin"; }, "");
   refused([](json& g) { g["scenes"][0]["nodes"] = {5}; }, "no mesh");
+  const std::string deep = R"({"asset": {"version": "2.0"}, "extras": )" +
+                           std::string(200000, '[') + std::string(200000, ']') + "}";
+  CheckRefused(folder.Write("deep.gltf", deep), "nest deeper");
   const auto used = [&] {
     json gltf = SquareGltf();
     gltf["extensionsUsed"].push_back("EXT_nobody_knows");

@@ -37,6 +37,35 @@ std::string FirstLine(const std::string& text) {
   return Printable(line);
 }
 
+// The JSON of a .gltf, or that of a .glb: its first chunk, or nothing where there is none.
+std::string_view JsonOf(const std::string& bytes) {
+  if (!bytes.starts_with("glTF")) return bytes;
+  constexpr std::size_t kHeader = 20;  // of the file and of the chunk
+  return bytes.size() > kHeader ? std::string_view(bytes).substr(kHeader) : std::string_view();
+}
+
+// tinygltf follows values down the stack: what nests deeper than this is refused before.
+constexpr int kMaxNesting = 256;
+
+bool NestsTooDeep(std::string_view json) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size() && depth <= kMaxNesting; ++i) {
+    const char c = json[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      if (--depth == 0) return false;  // the end of the JSON; binary chunks may follow
+    }
+  }
+  return depth > kMaxNesting;
+}
+
 class GltfReader {
  public:
   GltfReader(const std::string& name, SceneFiles& files) : name_(name), files_(files) {}
@@ -67,6 +96,9 @@ class GltfReader {
 
   bool Parse(const std::string& bytes) {
     if (bytes.size() > 0xffffffffu) return Fail("", "larger than 4 GiB");
+    if (NestsTooDeep(JsonOf(bytes))) {
+      return Fail("", fmt::format("values nest deeper than {}", kMaxNesting));
+    }
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({&FileExists, &KeepPath, &ReadFile, nullptr, this});
     loader.SetImageLoader(&KeepImage, this);
