@@ -900,6 +900,46 @@ TEST_CASE("SPD: pictures are POV-Ray's") {
   }
 }
 
+// The same number of triangles, the same box.
+void CheckAgainstAssimp([[maybe_unused]] const std::string& path,
+                        [[maybe_unused]] const Scene& scene) {
+#ifdef SHEAF_HAS_ASSIMP
+  Assimp::Importer importer;
+  const aiScene* theirs =
+      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  REQUIRE(theirs != nullptr);
+  std::size_t triangles = 0, our_triangles = 0;
+  Vec3d low(1e30), high(-1e30);
+  for (unsigned m = 0; m < theirs->mNumMeshes; ++m) {
+    const aiMesh& mesh = *theirs->mMeshes[m];
+    triangles += mesh.mNumFaces;
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const Vec3d p(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
+      for (int k = 0; k < 3; ++k)
+        low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    }
+  }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    our_triangles += MeshAt(scene, i).triangles.size();
+  }
+  CHECK(our_triangles == triangles);
+  const auto bounds = BoundsOf(scene);
+  REQUIRE(bounds.has_value());
+  for (int k = 0; k < 3; ++k) {
+    CHECK(bounds->min[k] == doctest::Approx(low[k]).epsilon(1e-6));
+    CHECK(bounds->max[k] == doctest::Approx(high[k]).epsilon(1e-6));
+  }
+#else
+  MESSAGE("skipped: built without assimp");
+#endif
+}
+
+TEST_CASE("glTF with both kinds of camera is what assimp says") {
+  const Folder folder;
+  const std::string path = folder.Write("a.gltf", SquareGltf().dump());
+  CheckAgainstAssimp(path, ReadOrFail(path));
+}
+
 TEST_CASE("spot and FlightHelmet are what assimp says") {
   for (const char* name : {"spot.obj", "FlightHelmet/FlightHelmet.gltf"}) {
     const std::string path = DataFolder() + "/models/" + name;
@@ -908,35 +948,7 @@ TEST_CASE("spot and FlightHelmet are what assimp says") {
     RenderOptions options;
     options.width = 64, options.height = 48;
     CheckSameBits(scene, scene.cameras[0], options);
-#ifdef SHEAF_HAS_ASSIMP
-    Assimp::Importer importer;
-    const aiScene* theirs =
-        importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-    REQUIRE(theirs != nullptr);
-    std::size_t triangles = 0, our_triangles = 0;
-    Vec3d low(1e30), high(-1e30);
-    for (unsigned m = 0; m < theirs->mNumMeshes; ++m) {
-      const aiMesh& mesh = *theirs->mMeshes[m];
-      triangles += mesh.mNumFaces;
-      for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-        const Vec3d p(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
-        for (int k = 0; k < 3; ++k)
-          low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-      }
-    }
-    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-      our_triangles += MeshAt(scene, i).triangles.size();
-    }
-    CHECK(our_triangles == triangles);
-    const auto bounds = BoundsOf(scene);
-    REQUIRE(bounds.has_value());
-    for (int k = 0; k < 3; ++k) {
-      CHECK(bounds->min[k] == doctest::Approx(low[k]).epsilon(1e-6));
-      CHECK(bounds->max[k] == doctest::Approx(high[k]).epsilon(1e-6));
-    }
-#else
-    MESSAGE("skipped: built without assimp");
-#endif
+    CheckAgainstAssimp(path, scene);
   }
 }
 
