@@ -24,6 +24,10 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
             "Pixels of the whole picture", &ParseSize);
 }
 
+void AddBits(CLI::App& app, std::optional<int>& bits) {
+  AddInteger(app, "--bits", bits, 8, 32, "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
+}
+
 void AddPrecision(CLI::App& app, std::string& name) {
   std::vector<std::string> names;
   for (const Precision precision : kPrecisions) names.push_back(PrecisionName(precision));

@@ -44,6 +44,9 @@ void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
 // --size, of the whole picture.
 void AddSize(CLI::App& app, std::optional<PixelSize>& size);
 
+// --bits, of a picture's channel.
+void AddBits(CLI::App& app, std::optional<int>& bits);
+
 // --precision, a name that PrecisionOf takes.
 void AddPrecision(CLI::App& app, std::string& name);
 

@@ -223,6 +223,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
   const Transfer transfer = request.transfer == "srgb" ? Transfer::kSrgb : Transfer::kLinear;
   const Result<Film> reference = ReadDisplayValues(request.inputs.front(), transfer);
   if (!reference) return reference.error();
+  std::optional<Film> shown_reference;  // clamped, where a picture asks for that
   Json json = {{"reference", request.inputs.front()}, {"pictures", Json::array()}};
   ExitCode code = ExitCode::kOk;
   std::string text;
@@ -230,12 +231,14 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     const std::string& path = request.inputs[i];
     Result<Film> test = ReadDisplayValues(path, transfer);
     if (!test) return test.error();
-    Film a = reference.value();
-    Film& b = test.value();
-    if (HoldsFloats(path) != HoldsFloats(request.inputs.front())) {
-      ClampToDisplay(a);
-      ClampToDisplay(b);
+    const bool is_mixed = HoldsFloats(path) != HoldsFloats(request.inputs.front());
+    if (is_mixed && !shown_reference) {
+      shown_reference = reference.value();
+      ClampToDisplay(*shown_reference);
     }
+    if (is_mixed) ClampToDisplay(test.value());
+    const Film& a = is_mixed ? *shown_reference : reference.value();
+    const Film& b = test.value();
     if (a.width != b.width || a.height != b.height) {
       return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", path, b.width, b.height,
                                request.inputs.front(), a.width, a.height));

@@ -102,11 +102,7 @@ Status ConvertPicture(const ConvertRequest& request) {
   } else {
     DecodeLight(picture);
   }
-  if (HoldsLayers(request.output)) {
-    for (int i = 0; i < kLayerCount; ++i) {
-      if (film.has(static_cast<Layer>(i))) spec.layers.Add(static_cast<Layer>(i));
-    }
-  }
+  if (HoldsLayers(request.output)) spec.layers = film.held_layers();
   return WritePicture(film, spec, request.output);
 }
 
@@ -121,8 +117,7 @@ CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request) {
   convert->add_option("-o", request.output, "The ending chooses the format")
       ->required()
       ->option_text("PATH");
-  AddInteger(*convert, "--bits", request.bits, 8, 32,
-             "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
+  AddBits(*convert, request.bits);
   convert
       ->add_option("--transfer", request.transfer,
                    "How a .png encodes light; keep: as the input does, or linear")

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "src/app/choose.h"
-#include "src/formats/read_scene.h"
+#include "src/scene/bounds.h"
 
 namespace sheaf {
 namespace {

@@ -46,9 +46,7 @@ Status PlaceParts(std::vector<Part>& parts) {
         picture.is_display != first.is_display) {
       return Usage(fmt::format("{}: encoded otherwise than {}", *part.path, *parts.front().path));
     }
-    for (int i = 0; i < kLayerCount; ++i) {
-      const Layer layer = static_cast<Layer>(i);
-      if (picture.film.has(layer) == first.film.has(layer)) continue;
+    if (picture.film.held_layers() != first.film.held_layers()) {
       return Usage(fmt::format("{}: other layers than {} has", *part.path, *parts.front().path));
     }
     const PixelRect& window = picture.window;
@@ -125,10 +123,7 @@ Status RunMerge(const MergeRequest& request) {
     return Usage(fmt::format("-o {}: the parts hold {}; sheaf convert changes that", request.output,
                              first.is_display ? "bytes" : "floats"));
   }
-  Layers layers;
-  for (int i = 0; i < kLayerCount; ++i) {
-    if (first.film.has(static_cast<Layer>(i))) layers.Add(static_cast<Layer>(i));
-  }
+  const Layers layers = first.film.held_layers();
   Film whole(first.full_width, first.full_height, layers);
   if (const Status filled = FillWhole(parts, whole); !filled) return filled;
   PictureSpec spec =

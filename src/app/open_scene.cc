@@ -18,7 +18,8 @@ std::optional<Vec3d> ParsePoint(const std::string& text) {
   if (words.size() != 3) return std::nullopt;
   Vec3d point;
   for (int i = 0; i < 3; ++i) {
-    const auto number = ParseNumber(words[static_cast<std::size_t>(i)], -1e30, 1e30);
+    const auto number =
+        ParseNumber(words[static_cast<std::size_t>(i)], -kMaxCoordinate, kMaxCoordinate);
     if (!number) return std::nullopt;
     point[i] = *number;
   }

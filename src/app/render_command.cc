@@ -172,8 +172,8 @@ class FrameWriter {
     Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
     if (!picture) return picture.error();
     FrameWriter writer(std::move(picture).value());
-    writer.far_ = FarthestDepth(scene, *frame.camera);
     for (const auto& [layer, path] : frame.beside) {
+      if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
       if (layer == Layer::kHeat) continue;  // known when all tiles are
       PictureSpec beside = spec;
       if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
@@ -213,7 +213,7 @@ class FrameWriter {
 
   PictureWriter picture_;
   std::vector<Beside> beside_;
-  double far_ = 1;
+  double far_ = 1;  // where depth is shown: what it is black at
 };
 
 Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_path,
@@ -295,8 +295,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
             "a list of depth, normal, albedo, id, heat",
             "Layers: depth, normal, albedo, id, heat; in .exr, else in files beside the picture",
             &ParseLayers);
-  AddInteger(*render, "--bits", request.bits, 8, 32,
-             "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
+  AddBits(*render, request.bits);
   AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
   AddParsed(*render, "--tile", request.tile, "N|I/N",
             fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),

@@ -1,7 +1,6 @@
 #include "src/app/scene_summary.h"
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <variant>
 
 namespace sheaf {
@@ -9,45 +8,22 @@ namespace {
 
 bool IsBlack(const Colour& colour) { return colour == Colour(0.0); }
 
-// Adds one shape to the counts and the bounds.
-class ShapeCounter {
- public:
-  explicit ShapeCounter(SceneSummary& summary) : summary_(summary) {}
+// Adds one shape to the counts.
+struct ShapeCounter {
+  SceneSummary& summary;
 
-  void operator()(const Sphere& sphere) {
-    ++summary_.spheres;
-    Include(sphere.center - Vec3d(sphere.radius));
-    Include(sphere.center + Vec3d(sphere.radius));
-  }
-  void operator()(const Quad& quad) {
-    summary_.triangles += 2;
-    for (const Vec3d& corner : quad.corners) Include(corner);
-  }
-  void operator()(const Triangle& triangle) {
-    ++summary_.triangles;
-    for (const Vec3d& vertex : triangle.vertices) Include(vertex);
-  }
-
-  void operator()(const Mesh& mesh) {
-    summary_.triangles += mesh.triangles.size();
-    for (const glm::vec3& vertex : mesh.positions) Include(Vec3d(vertex));
-  }
-
- private:
-  void Include(const Vec3d& point) {
-    if (!summary_.bounds) summary_.bounds = Bounds{point, point};
-    summary_.bounds->min = glm::min(summary_.bounds->min, point);
-    summary_.bounds->max = glm::max(summary_.bounds->max, point);
-  }
-
-  SceneSummary& summary_;
+  void operator()(const Sphere&) const { ++summary.spheres; }
+  void operator()(const Quad&) const { summary.triangles += 2; }
+  void operator()(const Triangle&) const { ++summary.triangles; }
+  void operator()(const Mesh& mesh) const { summary.triangles += mesh.triangles.size(); }
 };
 
 }  // namespace
 
 SceneSummary Summarize(const Scene& scene) {
   SceneSummary summary;
-  ShapeCounter counter(summary);
+  summary.bounds = BoundsOf(scene);
+  const ShapeCounter counter{summary};
   std::vector<const Material*> used;
   for (const Object& object : scene.objects) {
     std::visit(counter, object.shape);

@@ -7,13 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "src/scene/bounds.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
-
-struct Bounds {
-  Vec3d min, max;
-};
 
 // Something that a scene may have or lack. A material counts only where an object uses it.
 struct Feature {

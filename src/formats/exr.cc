@@ -219,8 +219,7 @@ Status ExrWriter::WriteRows(const Film& rows) { return encoder_->WriteRows(rows)
 Status ExrWriter::Finish() { return encoder_->Finish(); }
 
 Result<ReadPictureResult> ReadExr(const std::string& path) {
-  // What is no file at all is told as for every other format.
-  const Result<std::string> bytes = ReadWholeFile(path);
+  const Result<std::uint64_t> bytes = FileSize(path);
   if (!bytes) return bytes.error();
   try {
     Imf::InputFile file(path.c_str(), 0);
@@ -235,17 +234,18 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
           path, fmt::format("{}x{} pixels; sides may be 1 to {}", width, height, kMaxImageSide));
     }
     constexpr std::int64_t kMostPixelsPerByte = 4096;
-    if (width * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes.value().size())) {
+    if (width * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes.value())) {
       return InputError(path, "has more pixels than its bytes can hold");
     }
+    const auto is_full = [](const Imf::Channel& channel) {
+      return channel.xSampling == 1 && channel.ySampling == 1;
+    };
     const char* names[3] = {"R", "G", "B"};
     if (header.channels().findChannel("R") == nullptr) names[0] = names[1] = names[2] = "Y";
     for (const char* name : names) {
       const Imf::Channel* channel = header.channels().findChannel(name);
       if (channel == nullptr) return InputError(path, "has neither R, G and B nor Y");
-      if (channel->xSampling != 1 || channel->ySampling != 1) {
-        return InputError(path, "has channels of less than full resolution");
-      }
+      if (!is_full(*channel)) return InputError(path, "has channels of less than full resolution");
     }
     ReadPictureResult result;
     Layers layers;
@@ -253,7 +253,7 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
       const bool is_there = std::all_of(
           kChannelNames[i], kChannelNames[i] + kLayerChannels[i], [&](const char* name) {
             const Imf::Channel* channel = header.channels().findChannel(name);
-            return channel != nullptr && channel->xSampling == 1 && channel->ySampling == 1;
+            return channel != nullptr && is_full(*channel);
           });
       if (is_there) layers.Add(static_cast<Layer>(i));
     }

@@ -19,7 +19,6 @@
 namespace sheaf {
 namespace {
 
-constexpr double kMaxCoordinate = 1e30;
 constexpr int kMaxNodeDepth = 1024;
 
 const std::set<std::string_view> kKnownExtensions = {

@@ -18,7 +18,6 @@
 namespace sheaf {
 namespace {
 
-constexpr double kMaxNumber = 1e30;
 constexpr std::size_t kMaxCorners = 1 << 20;
 
 class NffReader {
@@ -60,8 +59,8 @@ class NffReader {
                      Printable(word, 40)));
   }
 
-  bool ReadNumber(const char* what, double* out, double low = -kMaxNumber,
-                  double high = kMaxNumber) {
+  bool ReadNumber(const char* what, double* out, double low = -kMaxCoordinate,
+                  double high = kMaxCoordinate) {
     const std::string_view word = scanner_.Word();
     const auto number = ParseWord<double>(word);
     if (number && *number >= low && *number <= high) {
@@ -74,8 +73,8 @@ class NffReader {
     return false;
   }
 
-  bool ReadTriple(const char* what, Vec3d* out, double low = -kMaxNumber,
-                  double high = kMaxNumber) {
+  bool ReadTriple(const char* what, Vec3d* out, double low = -kMaxCoordinate,
+                  double high = kMaxCoordinate) {
     return ReadNumber(what, &out->x, low, high) && ReadNumber(what, &out->y, low, high) &&
            ReadNumber(what, &out->z, low, high);
   }
@@ -222,7 +221,7 @@ class NffReader {
   void ReadSphere() {
     Sphere sphere;
     if (!ReadTriple("sphere", &sphere.center) ||
-        !ReadNumber("sphere radius", &sphere.radius, -kMaxNumber, kMaxNumber)) {
+        !ReadNumber("sphere radius", &sphere.radius, -kMaxCoordinate, kMaxCoordinate)) {
       return;
     }
     ExpectEnd();

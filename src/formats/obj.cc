@@ -21,8 +21,6 @@
 namespace sheaf {
 namespace {
 
-constexpr double kMaxCoordinate = 1e30;
-
 // ---- Whether the text is sound ----
 
 class ObjChecker {
@@ -231,8 +229,8 @@ Material ToMaterial(const tinyobj::material_t& from) {
 
 class ObjBuilder {
  public:
-  ObjBuilder(const std::string& name, SceneFiles& files, const tinyobj::attrib_t& attributes)
-      : name_(name), files_(files), attributes_(attributes) {
+  ObjBuilder(SceneFiles& files, const tinyobj::attrib_t& attributes)
+      : files_(files), attributes_(attributes) {
     latest_.resize(attributes.vertices.size() / 3, kNone);
   }
 
@@ -300,7 +298,6 @@ class ObjBuilder {
       }
     }
     corners_.clear();
-    std::fill(latest_.begin(), latest_.end(), kNone);
     mesh.triangles.reserve(faces.size());
     for (const std::size_t face : faces) {
       std::array<std::uint32_t, 3> triangle;
@@ -308,6 +305,12 @@ class ObjBuilder {
         triangle[k] = VertexOf(from.indices[3 * face + k], mesh);
       }
       mesh.triangles.push_back(triangle);
+    }
+    // For the next mesh: only what this one touched, since there may be many of a few faces.
+    for (const std::size_t face : faces) {
+      for (std::size_t k = 3 * face; k < 3 * face + 3; ++k) {
+        latest_[static_cast<std::size_t>(from.indices[k].vertex_index)] = kNone;
+      }
     }
     const bool is_white = std::all_of(mesh.colours.begin(), mesh.colours.end(),
                                       [](const glm::vec3& c) { return c == glm::vec3(1); });
@@ -353,14 +356,13 @@ class ObjBuilder {
     std::uint32_t previous;  // vertex of the same position
   };
 
-  const std::string& name_;
   SceneFiles& files_;
   const tinyobj::attrib_t& attributes_;
   Scene scene_;
   ImageCache images_;
   std::uint32_t plain_ = kNone;
   bool has_uv_ = false, has_normals_ = false;
-  std::vector<std::uint32_t> latest_;  // by position: its newest vertex
+  std::vector<std::uint32_t> latest_;  // by position: its newest vertex in this mesh, or kNone
   std::vector<Corner> corners_;        // by vertex
 };
 
@@ -379,7 +381,7 @@ Result<Scene> ParseObj(const std::string& text, const std::string& name, SceneFi
                                         &reader, true, false);
   if (reader.error()) return *reader.error();
   if (!is_read) return SceneError(name, Printable(error));
-  ObjBuilder builder(name, files, attributes);
+  ObjBuilder builder(files, attributes);
   if (const Status added = builder.AddMaterials(materials, reader); !added) return added.error();
   for (const tinyobj::shape_t& shape : shapes) builder.AddShape(shape);
   Scene scene = builder.TakeScene();

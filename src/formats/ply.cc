@@ -17,7 +17,6 @@
 namespace sheaf {
 namespace {
 
-constexpr double kMaxCoordinate = 1e30;
 constexpr std::size_t kMaxCorners = 1 << 20;
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };

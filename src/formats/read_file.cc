@@ -18,6 +18,11 @@ Error SystemError(const std::string& path, std::string_view what, int code) {
   return InputError(path, fmt::format("{}: {}", what, std::generic_category().message(code)));
 }
 
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
+
 std::string SizeText(std::size_t bytes) { return fmt::format("{} GiB", bytes >> 30); }
 
 }  // namespace
@@ -35,10 +40,7 @@ Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view w
 }
 
 Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes) {
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  const OpenFile file(std::fopen(path.c_str(), "rb"));
   if (!file) return SystemError(path, "cannot open", errno);
   // The size is only a hint, since pipes have none; the limit holds while reading.
   struct stat status {};
@@ -60,6 +62,15 @@ Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes
   }
   if (std::ferror(file.get())) return SystemError(path, "cannot read", errno);
   return text;
+}
+
+Result<std::uint64_t> FileSize(const std::string& path) {
+  const OpenFile file(std::fopen(path.c_str(), "rb"));
+  if (!file) return SystemError(path, "cannot open", errno);
+  struct stat status {};
+  if (fstat(fileno(file.get()), &status) != 0) return SystemError(path, "cannot read", errno);
+  if (!S_ISREG(status.st_mode)) return InputError(path, "is no seekable file");
+  return static_cast<std::uint64_t>(status.st_size);
 }
 
 }  // namespace sheaf

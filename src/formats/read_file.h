@@ -3,6 +3,7 @@
 #define SHEAF_FORMATS_READ_FILE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,9 @@ inline constexpr std::size_t kMaxModelBytes = std::size_t{1} << 34;
 // The bytes of a file or a pipe; memory grows with what is really there. kInputOutput where it
 // cannot be read or is larger than `max_bytes`.
 Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes = kMaxModelBytes);
+
+// The bytes that a file has. kInputOutput where it cannot be opened, or is none.
+Result<std::uint64_t> FileSize(const std::string& path);
 
 }  // namespace sheaf
 

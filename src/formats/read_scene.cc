@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <new>
 
@@ -40,32 +39,6 @@ fs::path Canonical(const fs::path& path) {
   return error ? fs::absolute(path, error).lexically_normal() : canonical;
 }
 
-class BoundsFinder {
- public:
-  void operator()(const Sphere& sphere) {
-    Include(sphere.center - sphere.radius);
-    Include(sphere.center + sphere.radius);
-  }
-  void operator()(const Quad& quad) {
-    for (const Vec3d& corner : quad.corners) Include(corner);
-  }
-  void operator()(const Triangle& triangle) {
-    for (const Vec3d& vertex : triangle.vertices) Include(vertex);
-  }
-  void operator()(const Mesh& mesh) {
-    for (const glm::vec3& vertex : mesh.positions) Include(Vec3d(vertex));
-  }
-
-  std::optional<SceneBounds> bounds;
-
- private:
-  void Include(const Vec3d& point) {
-    if (!bounds) bounds = SceneBounds{point, point};
-    bounds->min = glm::min(bounds->min, point);
-    bounds->max = glm::max(bounds->max, point);
-  }
-};
-
 void AddKeyLight(Scene* scene) {
   Light light;
   light.name = "key";
@@ -78,7 +51,7 @@ void AddKeyLight(Scene* scene) {
 
 KeyLight Complete(Scene* scene) {
   if (scene->cameras.empty()) {
-    const SceneBounds bounds = BoundsOf(*scene).value_or(SceneBounds{Vec3d(-1), Vec3d(1)});
+    const Bounds bounds = BoundsOf(*scene).value_or(Bounds{Vec3d(-1), Vec3d(1)});
     scene->cameras.push_back(CameraThatFrames(bounds, {0, 1, 0}));
   }
   if (!scene->lights.empty()) return KeyLight::kAbsent;
@@ -184,13 +157,7 @@ void AimKeyLight(Scene* scene) {
   scene->lights.front().source = DirectionalLight{ahead + 0.6 * right - 0.9 * up};
 }
 
-std::optional<SceneBounds> BoundsOf(const Scene& scene) {
-  BoundsFinder finder;
-  for (const Object& object : scene.objects) std::visit(finder, object.shape);
-  return finder.bounds;
-}
-
-Camera CameraThatFrames(const SceneBounds& bounds, const Vec3d& up) {
+Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up) {
   Camera camera;
   camera.name = "default";
   camera.look_at = (bounds.min + bounds.max) * 0.5;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/core/error.h"
+#include "src/scene/bounds.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -78,15 +79,9 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
 // Turns an added key light so that it shines over the left shoulder of the first camera.
 void AimKeyLight(Scene* scene);
 
-// The smallest box around all objects; nothing where there are none.
-struct SceneBounds {
-  Vec3d min, max;
-};
-std::optional<SceneBounds> BoundsOf(const Scene& scene);
-
 // The camera "default": looks at the middle of the box from the front, a little from the right and
 // above, so that its sphere just fits.
-Camera CameraThatFrames(const SceneBounds& bounds, const Vec3d& up);
+Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up);
 
 }  // namespace sheaf
 

@@ -14,9 +14,9 @@
 
 namespace sheaf {
 
-// The bounds keep float tracers finite: squares and products of these still fit.
-inline constexpr NumberRange kCoordinate{-1e30, 1e30, "a number in [-1e30, 1e30]"};
-inline constexpr NumberRange kRadius{0.0, 1e30, "a number in [0, 1e30]"};
+inline constexpr NumberRange kCoordinate{-kMaxCoordinate, kMaxCoordinate,
+                                         "a number in [-1e30, 1e30]"};
+inline constexpr NumberRange kRadius{0.0, kMaxCoordinate, "a number in [0, 1e30]"};
 inline constexpr NumberRange kFraction{0.0, 1.0, "a number in [0, 1]"};
 inline constexpr NumberRange kStrength{0.0, 1e6, "a number in [0, 1e6]"};
 inline constexpr double kSmallestPositive = 4.9406564584124654e-324;

@@ -1,5 +1,6 @@
 #include "src/formats/write_scene_json.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -137,6 +138,7 @@ Json SettingsJson(const Settings& settings) {
 template <typename T>
 void MakeUnique(std::vector<T>* things, const std::string& otherwise) {
   std::set<std::string> taken;
+  std::map<std::string, int> next;  // number to try after a name, where it is taken
   for (T& thing : *things) {
     for (char& c : thing.name) {
       if (HasControlCharacter({&c, 1})) c = '_';
@@ -144,9 +146,8 @@ void MakeUnique(std::vector<T>* things, const std::string& otherwise) {
     if (thing.name.empty() && otherwise.empty()) continue;
     const std::string base = thing.name.empty() ? otherwise : thing.name;
     thing.name = base;
-    for (int i = 2; !taken.insert(thing.name).second; ++i) {
-      thing.name = base + " " + std::to_string(i);
-    }
+    int& number = next.try_emplace(base, 2).first->second;
+    while (!taken.insert(thing.name).second) thing.name = base + " " + std::to_string(number++);
   }
 }
 

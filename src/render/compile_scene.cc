@@ -217,19 +217,24 @@ MaterialData<Real> CompileMaterial(const Material& material, const Settings& set
   return data;
 }
 
+// Linear light by byte.
+template <typename Real>
+std::vector<Real> DecodeTable(Transfer transfer) {
+  std::vector<Real> table;
+  for (int byte = 0; byte < 256; ++byte) {
+    const double share = byte / 255.0;
+    table.push_back(static_cast<Real>(transfer == Transfer::kSrgb ? SrgbDecode(share) : share));
+  }
+  return table;
+}
+
 template <typename Real>
 void CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
-  for (const Transfer transfer : {Transfer::kLinear, Transfer::kSrgb}) {
-    auto& table = compiled.decode[static_cast<int>(transfer)];
-    for (int byte = static_cast<int>(table.size()); byte < 256; ++byte) {
-      const double share = byte / 255.0;
-      table.push_back(static_cast<Real>(transfer == Transfer::kSrgb ? SrgbDecode(share) : share));
-    }
-  }
+  std::vector<Real>& decode = compiled.decode[static_cast<int>(texture.transfer)];
+  if (decode.empty()) decode = DecodeTable<Real>(texture.transfer);
   const Image& image = *texture.image;
   compiled.images.push_back(texture.image);
-  compiled.textures.push_back({image.texels.data(), image.width, image.height,
-                               compiled.decode[static_cast<int>(texture.transfer)].data(),
+  compiled.textures.push_back({image.texels.data(), image.width, image.height, decode.data(),
                                texture.wrap_u, texture.wrap_v, texture.filter});
 }
 

@@ -28,7 +28,7 @@ struct CompiledScene {
   std::vector<MaterialData<Real>> materials;
   std::vector<TextureData<Real>> textures;
   std::vector<std::shared_ptr<const Image>> images;  // that the textures show
-  std::vector<Real> decode[2];  // by Transfer, 256 each; empty without textures
+  std::vector<Real> decode[2];  // by Transfer, 256 each; empty where no texture has it
   std::vector<LightData<Real>> lights;
   Real background[3];
 

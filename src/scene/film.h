@@ -55,6 +55,7 @@ class Layers {
   bool has(Layer layer) const { return bits_ >> static_cast<int>(layer) & 1u; }
   bool empty() const { return bits_ == 0; }
   void Add(Layer layer) { bits_ |= 1u << static_cast<int>(layer); }
+  bool operator==(const Layers&) const = default;
 
  private:
   unsigned bits_ = 0;
@@ -91,6 +92,13 @@ struct Film {
   const float* pixel(int x, int y) const { return &rgb[3 * index(x, y)]; }
 
   bool has(Layer layer) const { return !layers[static_cast<int>(layer)].empty(); }
+  Layers held_layers() const {
+    Layers held;
+    for (int i = 0; i < kLayerCount; ++i) {
+      if (has(static_cast<Layer>(i))) held.Add(static_cast<Layer>(i));
+    }
+    return held;
+  }
   float* at(Layer layer, int x, int y) {
     const int i = static_cast<int>(layer);
     return &layers[i][static_cast<std::size_t>(kLayerChannels[i]) * index(x, y)];

@@ -152,6 +152,9 @@ struct View {
   std::vector<std::uint32_t> cameras;  // indices into Scene::cameras
 };
 
+// Readers take no larger number for a place or a length: sums of a few are finite as floats.
+inline constexpr double kMaxCoordinate = 1e30;
+
 inline constexpr int kMaxImageSide = 65536;
 inline constexpr int kMaxSamples = 65536;
 inline constexpr int kMaxDepth = 1000000;

@@ -1,0 +1,20 @@
+// The box around what a scene holds.
+#ifndef SHEAF_SCENE_BOUNDS_H_
+#define SHEAF_SCENE_BOUNDS_H_
+
+#include <optional>
+
+#include "src/scene/scene.h"
+
+namespace sheaf {
+
+struct Bounds {
+  Vec3d min, max;
+};
+
+// The smallest box around all objects; nothing where there are none.
+std::optional<Bounds> BoundsOf(const Scene& scene);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SCENE_BOUNDS_H_
