@@ -16,6 +16,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
+// As in src/scalar/pow.h.
+template <std::size_t kPairs, class D, class V = hn::Vec<D>>
+HWY_INLINE V EvaluatePairs(D d, const double (&pairs)[kPairs][2], V x) {
+  const V x2 = hn::Mul(x, x);
+  const auto pair = [&](std::size_t i) SHEAF_LAMBDA {
+    return hn::Add(hn::Mul(hn::Set(d, pairs[i][0]), x), hn::Set(d, pairs[i][1]));
+  };
+  V sum = pair(0);
+  for (std::size_t i = 1; i < kPairs; ++i) sum = hn::Add(hn::Mul(sum, x2), pair(i));
+  return sum;
+}
+
 template <typename Real, class D, class V = hn::Vec<D>>
 HWY_INLINE V Log2(D d, V x) {
   const hn::RebindToUnsigned<D> du;
@@ -27,10 +39,7 @@ HWY_INLINE V Log2(D d, V x) {
   const V m = hn::BitCast(d, hn::Add(mantissa, hn::Set(du, kSqrtHalfBits)));
   const V one = hn::Set(d, 1.0);
   const V s = hn::Div(hn::Sub(m, one), hn::Add(m, one));
-  const V s2 = hn::Mul(s, s);
-  V sum = hn::Zero(d);
-  for (const double term : PowTerms<Real>::kLog) sum = hn::Add(hn::Mul(sum, s2), hn::Set(d, term));
-  return hn::Add(e, hn::Mul(s, sum));
+  return hn::Add(e, hn::Mul(s, EvaluatePairs(d, PowTerms<Real>::kLog, hn::Mul(s, s))));
 }
 
 template <typename Real, class D, class V = hn::Vec<D>>
@@ -39,10 +48,10 @@ HWY_INLINE V Exp2(D d, V y) {
   const V round = hn::Set(d, kRoundToInteger);
   const V shifted = hn::Add(y, round);
   const V f = hn::Sub(y, hn::Sub(shifted, round));
-  V sum = hn::Zero(d);
-  for (const double term : PowTerms<Real>::kExp) sum = hn::Add(hn::Mul(sum, f), hn::Set(d, term));
+  const V power = EvaluatePairs(d, PowTerms<Real>::kExp, f);
   // The integer part stands in the low bits of `shifted`: it is added to the exponent.
-  return hn::BitCast(d, hn::Add(hn::BitCast(du, sum), hn::ShiftLeft<52>(hn::BitCast(du, shifted))));
+  return hn::BitCast(d,
+                     hn::Add(hn::BitCast(du, power), hn::ShiftLeft<52>(hn::BitCast(du, shifted))));
 }
 
 // x in [0, 1], p >= 0 for all lanes.

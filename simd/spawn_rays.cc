@@ -1,5 +1,7 @@
 #include "simd/spawn_rays.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/spawn_rays.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -11,40 +13,72 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// src/scalar/spawn.h: how an interface splits light, half a vector at a time; `is_total` where all
-// of it is reflected.
-template <class D, class M, class V = hn::Vec<D>>
-HWY_INLINE void FresnelSplit(D d, V eta, V cos_i, V& reflectance, V& cos_t, M& is_total) {
-  using Real = hn::TFromD<D>;
+// Surfaces that are worked on together: the divisions and roots of several vectors overlap, which
+// those of one do not.
+inline constexpr std::uint32_t kBlock = 2 * kMaxLanes;
+
+// What each surface of a block does with the light that arrives.
+template <typename Real>
+struct Splits {
+  alignas(kAlignment) Real cos_i[kBlock], eta[kBlock];
+  alignas(kAlignment) Real reflectance[kBlock];
+  alignas(kAlignment) Real cos_t[kBlock];  // -1 where reflection is total
+};
+
+// The angles of arrival at a vector of surfaces from `i` on, to the block at `at`.
+template <typename Real>
+HWY_INLINE void StoreArrival(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                             std::uint32_t i, std::uint32_t at, Splits<Real>& splits) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  const auto towards =
+      hn::Neg(Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
+                  hn::LoadU(d, surfaces.normal_z + i), hn::LoadU(d, surfaces.direction_x + i),
+                  hn::LoadU(d, surfaces.direction_y + i), hn::LoadU(d, surfaces.direction_z + i)));
+  hn::Store(hn::IfThenElseZero(hn::Gt(towards, hn::Zero(d)), towards), d, splits.cos_i + at);
+  const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+  const auto source = LoadIds(d, surfaces.source + i);
+  const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));
+  const auto ior = hn::Set(d, material.ior);
+  const auto outside_eta = hn::Div(hn::Set(d, Real(1)), ior);
+  hn::Store(hn::IfThenElse(inside, ior, outside_eta), d, splits.eta + at);
+}
+
+// src/scalar/spawn.h, FresnelSplit, for the surfaces of the block from `at` on, as many as are
+// wide.
+template <typename Real>
+HWY_INLINE void SplitLight(Splits<Real>& splits, std::uint32_t at) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
   const auto zero = hn::Zero(dw), one = hn::Set(dw, 1.0), two = hn::Set(dw, 2.0);
-  alignas(kAlignment) Real etas[kMaxLanes], cosines[kMaxLanes];
-  alignas(kAlignment) Real reflected[kMaxLanes], refracted_cosines[kMaxLanes];
-  hn::Store(eta, d, etas);
-  hn::Store(cos_i, d, cosines);
-  for (std::uint32_t lane = 0; lane < LaneCount(d); lane += LaneCount(dn)) {
-    const auto n = Widen(hn::Load(dn, etas + lane));
-    const auto c = Widen(hn::Load(dn, cosines + lane));
-    const auto sin2 = hn::Mul(hn::Mul(n, n), hn::Sub(one, hn::Mul(c, c)));
-    const auto k = hn::Sub(one, sin2);
-    const auto passes = hn::Gt(k, zero);
-    const auto root = hn::Sqrt(k);
-    const auto n_c = hn::Mul(n, c), n_t = hn::Mul(n, root);
-    const auto s = hn::Div(hn::Sub(n_c, root), hn::Add(n_c, root));
-    const auto p = hn::Div(hn::Sub(c, n_t), hn::Add(c, n_t));
-    const auto mean = hn::Div(hn::Add(hn::Mul(s, s), hn::Mul(p, p)), two);
-    hn::Store(Narrow<Real>(hn::IfThenElse(passes, mean, one)), dn, reflected + lane);
-    // A total reflection is marked by -1, and becomes 0 below.
-    hn::Store(Narrow<Real>(hn::IfThenElse(passes, root, hn::Neg(one))), dn,
-              refracted_cosines + lane);
-  }
-  const V cosine = hn::Load(d, refracted_cosines);
+  const auto n = Widen(hn::Load(dn, splits.eta + at));
+  const auto c = Widen(hn::Load(dn, splits.cos_i + at));
+  const auto sin2 = hn::Mul(hn::Mul(n, n), hn::Sub(one, hn::Mul(c, c)));
+  const auto k = hn::Sub(one, sin2);
+  const auto passes = hn::Gt(k, zero);
+  const auto root = hn::Sqrt(k);
+  const auto n_c = hn::Mul(n, c), n_t = hn::Mul(n, root);
+  const auto s1 = hn::Add(n_c, root), p1 = hn::Add(c, n_t);
+  const auto both = hn::Mul(s1, p1);
+  const auto s = hn::Mul(hn::Sub(n_c, root), p1), p = hn::Mul(hn::Sub(c, n_t), s1);
+  const auto reflectance =
+      Divide(dw, hn::Add(hn::Mul(s, s), hn::Mul(p, p)), hn::Mul(two, hn::Mul(both, both)));
   // Matched indices let everything through unbent, without the rounding of the square root.
-  const auto matched = hn::Eq(eta, hn::Set(d, Real(1)));
-  is_total = hn::AndNot(matched, hn::Lt(cosine, hn::Zero(d)));
-  reflectance = hn::IfThenZeroElse(matched, hn::Load(d, reflected));
-  cos_t = hn::IfThenElse(matched, cos_i, hn::IfThenZeroElse(is_total, cosine));
+  const auto matched = hn::Eq(n, one);
+  const auto split = hn::IfThenElse(passes, reflectance, one);
+  const auto cos_t = hn::IfThenElse(passes, root, hn::Neg(one));
+  hn::Store(Narrow<Real>(hn::IfThenZeroElse(matched, split)), dn, splits.reflectance + at);
+  hn::Store(Narrow<Real>(hn::IfThenElse(matched, c, cos_t)), dn, splits.cos_t + at);
+}
+
+template <typename Real>
+HWY_INLINE void FillBlock(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                          std::uint32_t first, std::uint32_t count, Splits<Real>& splits) {
+  for (std::uint32_t i = 0; i < count; i += LaneCount(Lanes<Real>())) {
+    StoreArrival(material, surfaces, first + i, i, splits);
+  }
+  if (!(material.needs & kNeedsTransmission)) return;
+  for (std::uint32_t i = 0; i < count; i += LaneCount(WideLanes<Real>())) SplitLight(splits, i);
 }
 
 template <typename Real>
@@ -60,8 +94,12 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
   using VI = hn::Vec<IdLanes<Lanes<Real>>>;
   const V zero = hn::Zero(d), one = hn::Set(d, Real(1)), least = hn::Set(d, min_weight);
   const VI bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+  const bool transmits = (material.needs & kNeedsTransmission) != 0;
   SpawnCounts size{0, 0};
+  Splits<Real> splits;
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
+    const std::uint32_t in_block = i % kBlock;
+    if (in_block == 0) FillBlock(material, surfaces, i, std::min(kBlock, count - i), splits);
     const auto lanes = LanesBelow(d, i, count);
     const V nx = hn::LoadU(d, surfaces.normal_x + i);
     const V ny = hn::LoadU(d, surfaces.normal_y + i);
@@ -87,15 +125,15 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V weight_g = weight(parents.weight_g);
     const V weight_b = weight(parents.weight_b);
 
-    const V towards = hn::Neg(Dot(d, nx, ny, nz, dx, dy, dz));
-    const V cos_i = hn::IfThenElseZero(hn::Gt(towards, zero), towards);
+    const V cos_i = hn::Load(d, splits.cos_i + in_block);
     V reflectance = zero, cos_t = zero, eta = one;
     auto is_total = hn::Eq(zero, zero);
-    if (material.needs & kNeedsTransmission) {
-      const V ior = hn::Set(d, material.ior);
-      const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));
-      eta = hn::IfThenElse(inside, ior, hn::Div(one, ior));
-      FresnelSplit(d, eta, cos_i, reflectance, cos_t, is_total);
+    if (transmits) {
+      eta = hn::Load(d, splits.eta + in_block);
+      reflectance = hn::Load(d, splits.reflectance + in_block);
+      const V marked = hn::Load(d, splits.cos_t + in_block);
+      is_total = hn::Lt(marked, zero);
+      cos_t = hn::IfThenZeroElse(is_total, marked);
     }
 
     const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, V side, VI from,

@@ -63,10 +63,21 @@ HWY_INLINE hn::Mask<D> MayHitSphere(D d, V fx, V fy, V fz, V dx, V dy, V dz, V s
   return hn::Not(misses);
 }
 
-// Both roots wide, as in IntersectSphere; NaN where the line misses.
-template <class DW, class W = hn::Vec<DW>>
-HWY_INLINE void SphereRoots(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, W& near, W& far) {
-  const W zero = hn::Zero(dw);
+// What the roots of `kCount` pairs are computed from, as in IntersectSphere. A line's terms wait
+// for one division and its root for the next, so each step is done for several lines before the
+// next.
+template <typename Real, std::uint32_t kCount>
+struct SphereTerms {
+  using Wide = hn::TFromD<WideLanes<Real>>;
+
+  alignas(kAlignment) Wide a[kCount], b[kCount], c[kCount];
+  alignas(kAlignment) Wide a_delta[kCount];  // NaN where the line misses
+};
+
+// The terms of a vector of lines from `at` on. (fx, fy, fz) is the origin relative to the center.
+template <typename Real, std::uint32_t kCount, class DW, class W = hn::Vec<DW>>
+HWY_INLINE void StoreTerms(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, std::uint32_t at,
+                           SphereTerms<Real, kCount>& terms) {
   const W nan = hn::Set(dw, std::numeric_limits<double>::quiet_NaN());
   const W a = Dot(dw, dx, dy, dz, dx, dy, dz);
   // Negated after the sum: Neg is exact, so the bits are those of -(f . d).
@@ -77,15 +88,26 @@ HWY_INLINE void SphereRoots(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, W& n
   const W lz = hn::Add(fz, hn::Mul(dz, s));
   const W r2 = hn::Mul(r, r);
   const W delta = hn::Sub(r2, Dot(dw, lx, ly, lz, lx, ly, lz));
-  const auto meets = hn::Ge(delta, zero);  // false for NaN
-  const W root = hn::IfThenElse(meets, hn::Sqrt(hn::Mul(a, delta)), nan);
-  const W c = hn::Sub(Dot(dw, fx, fy, fz, fx, fy, fz), r2);
-  const auto ahead = hn::Ge(b, zero);
+  const auto meets = hn::Ge(delta, hn::Zero(dw));  // false for NaN
+  hn::Store(a, dw, terms.a + at);
+  hn::Store(b, dw, terms.b + at);
+  hn::Store(hn::Sub(Dot(dw, fx, fy, fz, fx, fy, fz), r2), dw, terms.c + at);
+  hn::Store(hn::IfThenElse(meets, hn::Mul(a, delta), nan), dw, terms.a_delta + at);
+}
+
+// One root of each line: the far one in the lanes of `is_far`, the near one in the others; NaN
+// where the line misses.
+template <typename Real, std::uint32_t kCount, class DW, class W = hn::Vec<DW>>
+HWY_INLINE W SphereRoot(DW dw, const SphereTerms<Real, kCount>& terms, std::uint32_t at,
+                        hn::Mask<DW> is_far) {
+  const W a = hn::Load(dw, terms.a + at), b = hn::Load(dw, terms.b + at),
+          c = hn::Load(dw, terms.c + at);
+  const W root = hn::Sqrt(hn::Load(dw, terms.a_delta + at));
+  const auto ahead = hn::Ge(b, hn::Zero(dw));
   const W q = hn::IfThenElse(ahead, hn::Add(b, root), hn::Sub(b, root));
-  const W by_product = Divide(dw, c, q);
-  const W by_sum = Divide(dw, q, a);
-  near = hn::IfThenElse(ahead, by_product, by_sum);
-  far = hn::IfThenElse(ahead, by_sum, by_product);
+  // The far root ahead and the near one behind are q / a, the others c / q.
+  const auto by_product = hn::Xor(ahead, is_far);
+  return Divide(dw, hn::IfThenElse(by_product, c, q), hn::IfThenElse(by_product, q, a));
 }
 
 // The numbers of N rays or of one, and of N spheres or of one: what a half of a vector of pairs is
@@ -108,6 +130,16 @@ struct SpherePairs {
   PairColumn<Real> center[3], radius;
 };
 
+// Calls body(lane) for the halves of a vector that have a lane of `wanted`, by their first lanes.
+template <class D, typename Body>
+HWY_INLINE void ForEachHalf(D d, std::uint32_t wanted, Body body) {
+  const std::uint32_t lanes = LaneCount(NarrowLanes<hn::TFromD<D>>());
+  const std::uint32_t half = (1u << lanes) - 1;
+  for (std::uint32_t lane = 0; lane < LaneCount(d); lane += lanes) {
+    if ((wanted >> lane & half) != 0) body(lane);
+  }
+}
+
 // The lanes of `screened` that hit within [t_min, t_max], with t and u: src/scalar/trace.h,
 // HitSphere. `source` and `id` are the rays' sources and the spheres' ids; no lane of `screened`
 // starts outside on its sphere. Half a vector at a time, and no half without candidates.
@@ -115,31 +147,41 @@ template <class D, class V, class M, class VI, typename Real = hn::TFromD<D>>
 HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V t_min, V t_max,
                        M screened, V& t, V& u) {
   const WideLanes<Real> dw;
-  const hn::Rebind<Real, WideLanes<Real>> dn;
+  const NarrowLanes<Real> dn;
   const IdLanes<D> di;
-  alignas(kAlignment) Real nears[kMaxLanes], fars[kMaxLanes];
-  const std::uint32_t candidates = MaskBits(d, screened);
-  const std::uint32_t half = (1u << LaneCount(dn)) - 1;
-  for (std::uint32_t lane = 0; lane < LaneCount(d); lane += LaneCount(dn)) {
-    if ((candidates >> lane & half) == 0) continue;  // what the arrays hold there does not count
-    const auto relative = [&](int axis) SHEAF_LAMBDA {
-      return hn::Sub(Widen(pairs.origin[axis].Load(dn, lane)),
-                     Widen(pairs.center[axis].Load(dn, lane)));
-    };
-    hn::Vec<WideLanes<Real>> near, far;
-    SphereRoots(dw, relative(0), relative(1), relative(2), Widen(pairs.direction[0].Load(dn, lane)),
-                Widen(pairs.direction[1].Load(dn, lane)), Widen(pairs.direction[2].Load(dn, lane)),
-                Widen(pairs.radius.Load(dn, lane)), near, far);
-    hn::StoreU(Narrow<Real>(near), dn, nears + lane);
-    hn::StoreU(Narrow<Real>(far), dn, fars + lane);
-  }
-  const V near = hn::LoadU(d, nears), far = hn::LoadU(d, fars);
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  SphereTerms<Real, kMaxLanes> terms;
+  alignas(kAlignment) Real roots[kMaxLanes], is_far[kMaxLanes];
   const VI inside_id = hn::Or(id, hn::Set(di, hn::TFromD<IdLanes<D>>{kInsideBit}));
   const auto inside = hn::RebindMask(d, hn::Eq(source, inside_id));
-  // A NaN root is in no interval.
-  const auto near_counts = hn::AndNot(inside, hn::Le(t_min, near));
-  t = hn::IfThenElse(near_counts, near, far);
-  u = hn::IfThenElse(near_counts, hn::Zero(d), hn::Set(d, Real(1)));
+  u = hn::IfThenElse(inside, one, zero);
+  hn::Store(u, d, is_far);
+  hn::Store(u, d, roots);
+  const std::uint32_t candidates = MaskBits(d, screened);
+  ForEachHalf(d, candidates, [&](std::uint32_t lane) SHEAF_LAMBDA {
+    const auto wide = [&](const PairColumn<Real>& column)
+                          SHEAF_LAMBDA { return Widen(column.Load(dn, lane)); };
+    const auto relative = [&](int axis) SHEAF_LAMBDA {
+      return hn::Sub(wide(pairs.origin[axis]), wide(pairs.center[axis]));
+    };
+    StoreTerms(dw, relative(0), relative(1), relative(2), wide(pairs.direction[0]),
+               wide(pairs.direction[1]), wide(pairs.direction[2]), wide(pairs.radius), lane, terms);
+  });
+  const auto find_roots = [&](std::uint32_t wanted) SHEAF_LAMBDA {
+    ForEachHalf(d, wanted, [&](std::uint32_t lane) SHEAF_LAMBDA {
+      const auto far = hn::Ne(Widen(hn::Load(dn, is_far + lane)), hn::Zero(dw));
+      hn::Store(Narrow<Real>(SphereRoot(dw, terms, lane, far)), dn, roots + lane);
+    });
+    return hn::Load(d, roots);
+  };
+  t = find_roots(candidates);
+  // Rays that start in a sphere, or past it, see its far root. A NaN root is in no interval.
+  const auto too_near = hn::AndNot(hn::Or(inside, hn::Le(t_min, t)), screened);
+  if (!hn::AllFalse(d, too_near)) {
+    hn::Store(one, d, is_far);
+    u = hn::IfThenElse(too_near, one, u);
+    t = hn::IfThenElse(too_near, find_roots(MaskBits(d, too_near)), t);
+  }
   const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, t_max));
   return hn::And(screened, within);
 }

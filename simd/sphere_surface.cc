@@ -1,5 +1,7 @@
 #include "simd/sphere_surface.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/sphere_surface.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -11,81 +13,151 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
+// Hits that are worked on together, step by step: a step's divisions and roots overlap, where those
+// of one hit wait for each other.
+inline constexpr std::uint32_t kBlock = 2 * kMaxLanes;
+
+// What the surfaces of a block are computed from, and the parameter of the root that each hit is.
+template <typename Real>
+struct HitBlock {
+  using Wide = hn::TFromD<WideLanes<Real>>;
+
+  alignas(kAlignment) Real origin[3][kBlock];
+  alignas(kAlignment) Real direction[3][kBlock];
+  alignas(kAlignment) Real center[3][kBlock];
+  alignas(kAlignment) Real radius[kBlock];
+  alignas(kAlignment) Real leaves[kBlock];  // 1: the far root; 0: the near one
+  SphereTerms<Real, kBlock> terms;
+  alignas(kAlignment) Wide t[kBlock];
+};
+
+template <typename Real>
+HWY_INLINE void FindTerms(HitBlock<Real>& block, std::uint32_t i) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const auto wide = [&](const Real* column)
+                        SHEAF_LAMBDA { return Widen(hn::Load(dn, column + i)); };
+  const auto relative = [&](int axis) SHEAF_LAMBDA {
+    return hn::Sub(wide(block.origin[axis]), wide(block.center[axis]));
+  };
+  StoreTerms(dw, relative(0), relative(1), relative(2), wide(block.direction[0]),
+             wide(block.direction[1]), wide(block.direction[2]), wide(block.radius), i,
+             block.terms);
+}
+
+template <typename Real>
+HWY_INLINE void FindRoots(HitBlock<Real>& block, std::uint32_t i) {
+  const WideLanes<Real> dw;
+  const auto leaves = hn::Ne(Widen(hn::Load(NarrowLanes<Real>(), block.leaves + i)), hn::Zero(dw));
+  hn::Store(SphereRoot(dw, block.terms, i, leaves), dw, block.t + i);
+}
+
+// Writes surfaces at `to`.
+template <typename Real>
+HWY_INLINE void StoreSurfaces(const HitBlock<Real>& block, std::uint32_t i, std::size_t to,
+                              const SurfaceOutput<Real>& surfaces) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  using Wide = hn::TFromD<WideLanes<Real>>;
+  const auto wide = [&](const Real* column)
+                        SHEAF_LAMBDA { return Widen(hn::Load(dn, column + i)); };
+  const auto cx = wide(block.center[0]), cy = wide(block.center[1]), cz = wide(block.center[2]);
+  const auto r = wide(block.radius);
+  const auto leaves = hn::Ne(wide(block.leaves), hn::Zero(dw));
+  const auto t = hn::Load(dw, block.t + i);
+  const auto along = [&](int axis, auto c) SHEAF_LAMBDA {
+    return hn::Add(hn::Sub(wide(block.origin[axis]), c), hn::Mul(wide(block.direction[axis]), t));
+  };
+  auto nx = along(0, cx), ny = along(1, cy), nz = along(2, cz);
+  NormalizeWide(dw, nx, ny, nz);
+
+  const auto px = hn::Add(cx, hn::Mul(nx, r));
+  const auto py = hn::Add(cy, hn::Mul(ny, r));
+  const auto pz = hn::Add(cz, hn::Mul(nz, r));
+  const auto position_error = hn::Mul(hn::Set(dw, static_cast<Wide>(kPositionRoundoffs<Real>)),
+                                      AbsDot(dw, nx, ny, nz, px, py, pz));
+  const auto term_error = hn::Mul(hn::Set(dw, kTermRoundoffs<Wide>),
+                                  AbsDot(dw, nx, ny, nz, hn::Add(hn::Abs(cx), r),
+                                         hn::Add(hn::Abs(cy), r), hn::Add(hn::Abs(cz), r)));
+  const auto store = [&](auto v, Real* HWY_RESTRICT field)
+                         SHEAF_LAMBDA { hn::StoreU(Narrow<Real>(v), dn, field + to); };
+  const auto facing = [&](auto n) SHEAF_LAMBDA { return hn::IfThenElse(leaves, hn::Neg(n), n); };
+  store(px, surfaces.position_x);
+  store(py, surfaces.position_y);
+  store(pz, surfaces.position_z);
+  store(facing(nx), surfaces.normal_x);
+  store(facing(ny), surfaces.normal_y);
+  store(facing(nz), surfaces.normal_z);
+  store(hn::Add(position_error, term_error), surfaces.offset);
+}
+
+// A vector of hits to the block at `at`; what is only copied goes to the surfaces at once.
+template <typename Real>
+HWY_INLINE void FetchHits(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
+                          const HitView<Real>& hits, const HitBatch& batch, std::uint32_t i,
+                          std::uint32_t needs, const SurfaceOutput<Real>& surfaces,
+                          HitBlock<Real>& block, std::uint32_t at) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  // Lanes past the count gather element 0.
+  const auto lanes = hn::RebindMask(di, LanesBelow(d, i, batch.count));
+  const auto ray = hn::IfThenElseZero(lanes, LoadIds(d, batch.ray + i));
+  const auto local = hn::IfThenElseZero(lanes, LoadIds(d, batch.local + i));
+  const std::uint32_t wanted = batch.count - i;
+  const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(d), wanted);
+  const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(d), wanted);
+  const auto of_ray = [&](const Real* array)
+                          HWY_ATTR { return Fetch(d, ray_pattern, array, batch.ray[i], ray); };
+  const auto of_local = [&](const Real* array) HWY_ATTR {
+    return Fetch(d, local_pattern, array, batch.local[i], local);
+  };
+  const auto dx = of_ray(rays.direction_x);
+  const auto dy = of_ray(rays.direction_y);
+  const auto dz = of_ray(rays.direction_z);
+  const auto leaves = hn::Ne(of_ray(hits.u), hn::Zero(d));
+  hn::Store(of_ray(rays.origin_x), d, block.origin[0] + at);
+  hn::Store(of_ray(rays.origin_y), d, block.origin[1] + at);
+  hn::Store(of_ray(rays.origin_z), d, block.origin[2] + at);
+  hn::Store(dx, d, block.direction[0] + at);
+  hn::Store(dy, d, block.direction[1] + at);
+  hn::Store(dz, d, block.direction[2] + at);
+  hn::Store(of_local(spheres.center_x), d, block.center[0] + at);
+  hn::Store(of_local(spheres.center_y), d, block.center[1] + at);
+  hn::Store(of_local(spheres.center_z), d, block.center[2] + at);
+  hn::Store(of_local(spheres.radius), d, block.radius + at);
+  hn::Store(hn::IfThenElseZero(leaves, hn::Set(d, Real(1))), d, block.leaves + at);
+
+  hn::StoreU(dx, d, surfaces.direction_x + i);
+  hn::StoreU(dy, d, surfaces.direction_y + i);
+  hn::StoreU(dz, d, surfaces.direction_z + i);
+  if (needs & kNeedsCoordinates) {
+    hn::StoreU(hn::Zero(d), d, surfaces.u + i);
+    hn::StoreU(hn::Zero(d), d, surfaces.v + i);
+  }
+  const auto inside = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
+  const auto id = LoadIds(d, batch.primitive + i);
+  StoreIds(d, hn::Or(id, hn::IfThenElseZero(hn::RebindMask(di, leaves), inside)),
+           surfaces.source + i);
+  StoreIds(d, ray, surfaces.ray + i);
+}
+
 template <typename Real>
 void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
                          const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                          const SurfaceOutput<Real>& surfaces) {
-  const WideLanes<Real> dw;
-  const NarrowLanes<Real> dn;
-  const IdLanes<NarrowLanes<Real>> di;
-  using Wide = hn::TFromD<WideLanes<Real>>;
-  for (std::uint32_t i = 0; i < batch.count; i += LaneCount(dn)) {
-    // Lanes past the count gather element 0.
-    const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
-    const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
-    const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
-    const std::uint32_t wanted = batch.count - i;
-    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
-    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
-    const auto of_ray = [&](const Real* array)
-                            HWY_ATTR { return Fetch(dn, ray_pattern, array, batch.ray[i], ray); };
-    const auto of_local = [&](const Real* array) HWY_ATTR {
-      return Fetch(dn, local_pattern, array, batch.local[i], local);
-    };
-    const auto direction_x = of_ray(rays.direction_x);
-    const auto direction_y = of_ray(rays.direction_y);
-    const auto direction_z = of_ray(rays.direction_z);
-    const auto leaves = hn::Ne(of_ray(hits.u), hn::Zero(dn));
-
-    const auto cx = Widen(of_local(spheres.center_x));
-    const auto cy = Widen(of_local(spheres.center_y));
-    const auto cz = Widen(of_local(spheres.center_z));
-    const auto r = Widen(of_local(spheres.radius));
-    const auto fx = hn::Sub(Widen(of_ray(rays.origin_x)), cx);
-    const auto fy = hn::Sub(Widen(of_ray(rays.origin_y)), cy);
-    const auto fz = hn::Sub(Widen(of_ray(rays.origin_z)), cz);
-    const auto dx = Widen(direction_x), dy = Widen(direction_y), dz = Widen(direction_z);
-    auto near = hn::Zero(dw), far = hn::Zero(dw);
-    SphereRoots(dw, fx, fy, fz, dx, dy, dz, r, near, far);
-    const auto leaves_wide =
-        hn::Ne(Widen(hn::IfThenElseZero(leaves, hn::Set(dn, Real(1)))), hn::Zero(dw));
-    const auto t = hn::IfThenElse(leaves_wide, far, near);
-    auto nx = hn::Add(fx, hn::Mul(dx, t));
-    auto ny = hn::Add(fy, hn::Mul(dy, t));
-    auto nz = hn::Add(fz, hn::Mul(dz, t));
-    NormalizeWide(dw, nx, ny, nz);
-
-    const auto px = hn::Add(cx, hn::Mul(nx, r));
-    const auto py = hn::Add(cy, hn::Mul(ny, r));
-    const auto pz = hn::Add(cz, hn::Mul(nz, r));
-    const auto position_error = hn::Mul(hn::Set(dw, static_cast<Wide>(kPositionRoundoffs<Real>)),
-                                        AbsDot(dw, nx, ny, nz, px, py, pz));
-    const auto term_error = hn::Mul(hn::Set(dw, kTermRoundoffs<Wide>),
-                                    AbsDot(dw, nx, ny, nz, hn::Add(hn::Abs(cx), r),
-                                           hn::Add(hn::Abs(cy), r), hn::Add(hn::Abs(cz), r)));
-
-    hn::StoreU(Narrow<Real>(px), dn, surfaces.position_x + i);
-    hn::StoreU(Narrow<Real>(py), dn, surfaces.position_y + i);
-    hn::StoreU(Narrow<Real>(pz), dn, surfaces.position_z + i);
-    const auto facing = [&](auto n) HWY_ATTR {
-      return Narrow<Real>(hn::IfThenElse(leaves_wide, hn::Neg(n), n));
-    };
-    hn::StoreU(facing(nx), dn, surfaces.normal_x + i);
-    hn::StoreU(facing(ny), dn, surfaces.normal_y + i);
-    hn::StoreU(facing(nz), dn, surfaces.normal_z + i);
-    hn::StoreU(direction_x, dn, surfaces.direction_x + i);
-    hn::StoreU(direction_y, dn, surfaces.direction_y + i);
-    hn::StoreU(direction_z, dn, surfaces.direction_z + i);
-    if (needs & kNeedsCoordinates) {
-      hn::StoreU(hn::Zero(dn), dn, surfaces.u + i);
-      hn::StoreU(hn::Zero(dn), dn, surfaces.v + i);
+  const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  const std::uint32_t wide_lanes = LaneCount(WideLanes<Real>());
+  HitBlock<Real> block;
+  for (std::uint32_t first = 0; first < batch.count; first += kBlock) {
+    const std::uint32_t count = std::min(kBlock, batch.count - first);
+    for (std::uint32_t i = 0; i < count; i += lanes) {
+      FetchHits(spheres, rays, hits, batch, first + i, needs, surfaces, block, i);
     }
-    hn::StoreU(Narrow<Real>(hn::Add(position_error, term_error)), dn, surfaces.offset + i);
-    const auto inside = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
-    const auto id = LoadIds(dn, batch.primitive + i);
-    StoreIds(dn, hn::Or(id, hn::IfThenElseZero(hn::RebindMask(di, leaves), inside)),
-             surfaces.source + i);
-    StoreIds(dn, ray, surfaces.ray + i);
+    for (std::uint32_t i = 0; i < count; i += wide_lanes) FindTerms(block, i);
+    for (std::uint32_t i = 0; i < count; i += wide_lanes) FindRoots(block, i);
+    for (std::uint32_t i = 0; i < count; i += wide_lanes) {
+      StoreSurfaces(block, i, std::size_t{first} + i, surfaces);
+    }
   }
 }
 SHEAF_NAME_KERNELS(SphereSurfaces);

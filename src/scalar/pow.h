@@ -4,12 +4,22 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "simd/pow_terms.h"
 #include "src/scalar/vec3.h"
 
 namespace sheaf::scalar {
+
+// The polynomial whose coefficients stand in pairs, as PowTerms has them.
+template <std::size_t kPairs>
+double EvaluatePairs(const double (&pairs)[kPairs][2], double x) {
+  const double x2 = x * x;
+  double sum = pairs[0][0] * x + pairs[0][1];
+  for (std::size_t i = 1; i < kPairs; ++i) sum = sum * x2 + (pairs[i][0] * x + pairs[i][1]);
+  return sum;
+}
 
 // log2 x of a normal x in (2^-1000, 1]: x = 2^e m with m in [sqrt(1/2), sqrt(2)), and
 // log2 m = 2/ln 2 artanh(s), s = (m - 1) / (m + 1). Near 1, m - 1 is exact and so is the result.
@@ -23,10 +33,7 @@ double Log2(double x) {
                    (kTwo52 + static_cast<double>(kExponentBias));
   const double m = std::bit_cast<double>((shifted & kMantissaMask) + kSqrtHalfBits);
   const double s = (m - 1) / (m + 1);
-  const double s2 = s * s;
-  double sum = 0;
-  for (const double term : PowTerms<Real>::kLog) sum = sum * s2 + term;
-  return e + s * sum;
+  return e + s * EvaluatePairs(PowTerms<Real>::kLog, s * s);
 }
 
 // 2^y for y in [-1000, 0].
@@ -34,10 +41,9 @@ template <typename Real>
 double Exp2(double y) {
   const double shifted = y + kRoundToInteger;
   const double f = y - (shifted - kRoundToInteger);
-  double sum = 0;
-  for (const double term : PowTerms<Real>::kExp) sum = sum * f + term;
+  const double power = EvaluatePairs(PowTerms<Real>::kExp, f);
   // The integer part stands in the low bits of `shifted`: it is added to the exponent.
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(sum) +
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(power) +
                                (std::bit_cast<std::uint64_t>(shifted) << 52));
 }
 

@@ -32,9 +32,12 @@ Split<Real> FresnelSplit(Real eta, Real cos_i) {
   const W k = 1 - (n * n) * (1 - c * c);
   if (!(k > 0)) return {1, 0, true};
   const W cos_t = std::sqrt(k);
-  const W s = (n * c - cos_t) / (n * c + cos_t);
-  const W p = (c - n * cos_t) / (c + n * cos_t);
-  return {static_cast<Real>((s * s + p * p) / 2), static_cast<Real>(cos_t), false};
+  // s = s0 / s1 and p = p0 / p1 are the amplitudes; their squares are added over one denominator.
+  const W s0 = n * c - cos_t, s1 = n * c + cos_t;
+  const W p0 = c - n * cos_t, p1 = c + n * cos_t;
+  const W both = s1 * p1, s = s0 * p1, p = p0 * s1;
+  const W reflectance = (s * s + p * p) / (2 * (both * both));
+  return {static_cast<Real>(reflectance), static_cast<Real>(cos_t), false};
 }
 
 // A ray and its throughput.
