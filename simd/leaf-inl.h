@@ -98,10 +98,10 @@ HWY_NOINLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* blo
       {{packet.direction[0], 1}, {packet.direction[1], 1}, {packet.direction[2], 1}},
       {{block + i, 0}, {block + n + i, 0}, {block + 2 * n + i, 0}},
       {block + 3 * n + i, 0}};
-  V t, u;
-  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, u);
+  V t, u, v;
+  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, u, v);
   if (hn::AllFalse(d, hit)) return;
-  KeepHits<kQuery>(d, packet, hit, t, u, hn::Zero(d), ids);
+  KeepHits<kQuery>(d, packet, hit, t, u, v, ids);
 }
 
 // Primitives of the leaf whose bits are set in `wanted`.
@@ -227,14 +227,16 @@ HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, P
          {packet.direction[2] + lane, 0}},
         {{block + i, 1}, {block + n + i, 1}, {block + 2 * n + i, 1}},
         {block + 3 * n + i, 1}};
-    V t, u;
-    std::uint32_t hits = MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, u));
+    V t, u, v;
+    std::uint32_t hits =
+        MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, u, v));
     if (hits == 0) continue;
     hn::Store(t, d, ts);
     hn::Store(u, d, us);
+    hn::Store(v, d, vs);
     for (; hits != 0; hits &= hits - 1) {
       const int k = std::countr_zero(hits);
-      KeepHit<kQuery>(packet, lane, ts[k], us[k], Real(0),
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k],
                       tree.sphere_id[first + i + static_cast<std::uint32_t>(k)]);
     }
   }

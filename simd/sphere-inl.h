@@ -140,23 +140,24 @@ HWY_INLINE void ForEachHalf(D d, std::uint32_t wanted, Body body) {
   }
 }
 
-// The lanes of `screened` that hit within [t_min, t_max], with t and u: src/scalar/trace.h,
+// The lanes of `screened` that hit within [t_min, t_max], with t, u and v: src/scalar/trace.h,
 // HitSphere. `source` and `id` are the rays' sources and the spheres' ids; no lane of `screened`
 // starts outside on its sphere. Half a vector at a time, and no half without candidates.
 template <class D, class V, class M, class VI, typename Real = hn::TFromD<D>>
 HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V t_min, V t_max,
-                       M screened, V& t, V& u) {
+                       M screened, V& t, V& u, V& v) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
   const IdLanes<D> di;
   const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
   SphereTerms<Real, kMaxLanes> terms;
-  alignas(kAlignment) Real roots[kMaxLanes], is_far[kMaxLanes];
+  alignas(kAlignment) Real roots[kMaxLanes], rests[kMaxLanes], is_far[kMaxLanes];
   const VI inside_id = hn::Or(id, hn::Set(di, hn::TFromD<IdLanes<D>>{kInsideBit}));
   const auto inside = hn::RebindMask(d, hn::Eq(source, inside_id));
   u = hn::IfThenElse(inside, one, zero);
   hn::Store(u, d, is_far);
   hn::Store(u, d, roots);
+  hn::Store(zero, d, rests);
   const std::uint32_t candidates = MaskBits(d, screened);
   ForEachHalf(d, candidates, [&](std::uint32_t lane) SHEAF_LAMBDA {
     const auto wide = [&](const PairColumn<Real>& column)
@@ -170,17 +171,25 @@ HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V 
   const auto find_roots = [&](std::uint32_t wanted) SHEAF_LAMBDA {
     ForEachHalf(d, wanted, [&](std::uint32_t lane) SHEAF_LAMBDA {
       const auto far = hn::Ne(Widen(hn::Load(dn, is_far + lane)), hn::Zero(dw));
-      hn::Store(Narrow<Real>(SphereRoot(dw, terms, lane, far)), dn, roots + lane);
+      const auto root = SphereRoot(dw, terms, lane, far);
+      const auto rounded = Narrow<Real>(root);
+      hn::Store(rounded, dn, roots + lane);
+      if constexpr (kHasWide<Real>) {
+        hn::Store(Narrow<Real>(hn::Sub(root, Widen(rounded))), dn, rests + lane);
+      }
     });
-    return hn::Load(d, roots);
   };
-  t = find_roots(candidates);
+  find_roots(candidates);
+  t = hn::Load(d, roots);
+  v = hn::Load(d, rests);
   // Rays that start in a sphere, or past it, see its far root. A NaN root is in no interval.
   const auto too_near = hn::AndNot(hn::Or(inside, hn::Le(t_min, t)), screened);
   if (!hn::AllFalse(d, too_near)) {
     hn::Store(one, d, is_far);
     u = hn::IfThenElse(too_near, one, u);
-    t = hn::IfThenElse(too_near, find_roots(MaskBits(d, too_near)), t);
+    find_roots(MaskBits(d, too_near));
+    t = hn::IfThenElse(too_near, hn::Load(d, roots), t);
+    v = hn::IfThenElse(too_near, hn::Load(d, rests), v);
   }
   const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, t_max));
   return hn::And(screened, within);

@@ -13,44 +13,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// Hits that are worked on together, step by step: a step's divisions and roots overlap, where those
-// of one hit wait for each other.
+// Hits that are worked on together: the divisions and roots of several vectors overlap.
 inline constexpr std::uint32_t kBlock = 2 * kMaxLanes;
 
-// What the surfaces of a block are computed from, and the parameter of the root that each hit is.
+// What the surfaces of a block are computed from.
 template <typename Real>
 struct HitBlock {
-  using Wide = hn::TFromD<WideLanes<Real>>;
-
   alignas(kAlignment) Real origin[3][kBlock];
   alignas(kAlignment) Real direction[3][kBlock];
   alignas(kAlignment) Real center[3][kBlock];
   alignas(kAlignment) Real radius[kBlock];
+  alignas(kAlignment) Real t[kBlock], rest[kBlock];
   alignas(kAlignment) Real leaves[kBlock];  // 1: the far root; 0: the near one
-  SphereTerms<Real, kBlock> terms;
-  alignas(kAlignment) Wide t[kBlock];
 };
-
-template <typename Real>
-HWY_INLINE void FindTerms(HitBlock<Real>& block, std::uint32_t i) {
-  const WideLanes<Real> dw;
-  const NarrowLanes<Real> dn;
-  const auto wide = [&](const Real* column)
-                        SHEAF_LAMBDA { return Widen(hn::Load(dn, column + i)); };
-  const auto relative = [&](int axis) SHEAF_LAMBDA {
-    return hn::Sub(wide(block.origin[axis]), wide(block.center[axis]));
-  };
-  StoreTerms(dw, relative(0), relative(1), relative(2), wide(block.direction[0]),
-             wide(block.direction[1]), wide(block.direction[2]), wide(block.radius), i,
-             block.terms);
-}
-
-template <typename Real>
-HWY_INLINE void FindRoots(HitBlock<Real>& block, std::uint32_t i) {
-  const WideLanes<Real> dw;
-  const auto leaves = hn::Ne(Widen(hn::Load(NarrowLanes<Real>(), block.leaves + i)), hn::Zero(dw));
-  hn::Store(SphereRoot(dw, block.terms, i, leaves), dw, block.t + i);
-}
 
 // Writes surfaces at `to`.
 template <typename Real>
@@ -64,7 +39,7 @@ HWY_INLINE void StoreSurfaces(const HitBlock<Real>& block, std::uint32_t i, std:
   const auto cx = wide(block.center[0]), cy = wide(block.center[1]), cz = wide(block.center[2]);
   const auto r = wide(block.radius);
   const auto leaves = hn::Ne(wide(block.leaves), hn::Zero(dw));
-  const auto t = hn::Load(dw, block.t + i);
+  const auto t = hn::Add(wide(block.t), wide(block.rest));
   const auto along = [&](int axis, auto c) SHEAF_LAMBDA {
     return hn::Add(hn::Sub(wide(block.origin[axis]), c), hn::Mul(wide(block.direction[axis]), t));
   };
@@ -125,6 +100,8 @@ HWY_INLINE void FetchHits(const SphereArrays<Real>& spheres, const RayView<Real>
   hn::Store(of_local(spheres.center_y), d, block.center[1] + at);
   hn::Store(of_local(spheres.center_z), d, block.center[2] + at);
   hn::Store(of_local(spheres.radius), d, block.radius + at);
+  hn::Store(of_ray(hits.t), d, block.t + at);
+  hn::Store(of_ray(hits.v), d, block.rest + at);
   hn::Store(hn::IfThenElseZero(leaves, hn::Set(d, Real(1))), d, block.leaves + at);
 
   hn::StoreU(dx, d, surfaces.direction_x + i);
@@ -153,8 +130,6 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
     for (std::uint32_t i = 0; i < count; i += lanes) {
       FetchHits(spheres, rays, hits, batch, first + i, needs, surfaces, block, i);
     }
-    for (std::uint32_t i = 0; i < count; i += wide_lanes) FindTerms(block, i);
-    for (std::uint32_t i = 0; i < count; i += wide_lanes) FindRoots(block, i);
     for (std::uint32_t i = 0; i < count; i += wide_lanes) {
       StoreSurfaces(block, i, std::size_t{first} + i, surfaces);
     }

@@ -28,8 +28,7 @@ struct Surface {
   std::uint32_t primitive() const { return source & ~kInsideBit; }
 };
 
-// `hit.u` says which root the hit is; recomputing that root wide gives a normal without the
-// rounding of t.
+// With `hit.v`, the root has bits enough for a normal without the rounding of t.
 template <typename Real>
 Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
                             const SphereArrays<Real>& spheres, std::uint32_t i) {
@@ -37,9 +36,8 @@ Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   const Vec3<Real> center = {spheres.center_x[i], spheres.center_y[i], spheres.center_z[i]};
   const Vec3<W> c = center.template To<W>();
   const Vec3<W> d = ray.direction.template To<W>();
-  const auto roots = IntersectSphere(ray.origin, ray.direction, center, spheres.radius[i]);
   const bool leaves = hit.u != 0;
-  const W t = leaves ? roots->far : roots->near;
+  const W t = static_cast<W>(hit.t) + static_cast<W>(hit.v);
   const Vec3<W> out = NormalizeWide((ray.origin.template To<W>() - c) + d * t);
   const W r = static_cast<W>(spheres.radius[i]);
   const Vec3<W> position = c + out * r;

@@ -19,6 +19,7 @@ template <typename Real>
 struct SphereHit {
   Real t;
   Real u;  // 0: the ray enters, 1: it leaves
+  Real v;  // what rounding took from t
 };
 
 // The first root of one sphere in [t_min, t_max]; the source sphere shows its far root or nothing.
@@ -33,12 +34,17 @@ SHEAF_INLINE std::optional<SphereHit<Real>> HitSphere(const Ray<Real>& ray,
       Vec3<Real>{spheres.center_x[i], spheres.center_y[i], spheres.center_z[i]}, spheres.radius[i]);
   if (!roots) return std::nullopt;
   const Real near = static_cast<Real>(roots->near), far = static_cast<Real>(roots->far);
+  const auto rest = [](Wide<Real> root, Real t) {
+    return static_cast<Real>(root - static_cast<Wide<Real>>(t));
+  };
   // A NaN root is in no interval.
   if (ray.source != (id | kInsideBit) && ray.t_min <= near) {
-    if (near <= ray.t_max) return SphereHit<Real>{near, Real(0)};
+    if (near <= ray.t_max) return SphereHit<Real>{near, Real(0), rest(roots->near, near)};
     return std::nullopt;
   }
-  if (ray.t_min <= far && far <= ray.t_max) return SphereHit<Real>{far, Real(1)};
+  if (ray.t_min <= far && far <= ray.t_max) {
+    return SphereHit<Real>{far, Real(1), rest(roots->far, far)};
+  }
   return std::nullopt;
 }
 
@@ -75,7 +81,7 @@ Hit<Real> TraceClosest(const GeometryView<Real>& geometry, Ray<Real> ray) {
   };
   for (std::uint32_t i = 0; i < geometry.spheres.count; ++i) {
     if (const auto hit = HitSphere(ray, geometry.spheres, i)) {
-      keep(geometry.spheres.id[i], hit->t, hit->u, Real(0));
+      keep(geometry.spheres.id[i], hit->t, hit->u, hit->v);
     }
   }
   if (geometry.triangles.count == 0) return closest;

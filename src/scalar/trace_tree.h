@@ -131,7 +131,7 @@ class TreeTracer {
     } else {
       const SphereArrays<Real> block = SphereBlock(tree_, leaf);
       for (std::uint32_t i = 0; i < block.count && !is_done(); ++i) {
-        if (const auto hit = HitSphere(ray_, block, i)) Keep(block.id[i], hit->t, hit->u, Real(0));
+        if (const auto hit = HitSphere(ray_, block, i)) Keep(block.id[i], hit->t, hit->u, hit->v);
       }
     }
   }
