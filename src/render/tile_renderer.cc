@@ -280,14 +280,8 @@ template <typename Real>
 void TileRenderer<Real>::FindEdges(const PixelRect& tile) {
   AddSample(0);
   const auto sample = sample_.view();
-  const int width = ordered_.width();
-  pixel_at_.resize(static_cast<std::size_t>(width * ordered_.height()));
-  const auto at = [&](int x, int y) -> std::uint32_t& {
-    return pixel_at_[static_cast<std::size_t>((y - ordered_.y0) * width + (x - ordered_.x0))];
-  };
   for (std::uint32_t i = 0; i < pixels_.count; ++i) {
     first_hits_[i].colour = {sample.r[i], sample.g[i], sample.b[i]};
-    at(static_cast<int>(pixels_.x[i]), static_cast<int>(pixels_.y[i])) = i;
   }
   // Each pair once, from its left or upper pixel.
   is_edge_.assign(pixels_.count, false);
@@ -298,8 +292,8 @@ void TileRenderer<Real>::FindEdges(const PixelRect& tile) {
   };
   for (int y = ordered_.y0; y < ordered_.y1; ++y) {
     for (int x = ordered_.x0; x < ordered_.x1; ++x) {
-      if (x + 1 < ordered_.x1) judge(at(x, y), at(x + 1, y));
-      if (y + 1 < ordered_.y1) judge(at(x, y), at(x, y + 1));
+      if (x + 1 < ordered_.x1) judge(PixelAt(x, y), PixelAt(x + 1, y));
+      if (y + 1 < ordered_.y1) judge(PixelAt(x, y), PixelAt(x, y + 1));
     }
   }
   edges_.Reserve(pixels_.count);
@@ -358,17 +352,19 @@ void TileRenderer<Real>::RecordLayers(const HitBin& bin, const MaterialData<Real
   }
 }
 
-// Those of `tile`: with neighbours there are more.
+// Those of `tile`: with neighbours there are more. Row by row, so that a line of the film's memory
+// is written at once.
 template <typename Real>
 void TileRenderer<Real>::WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film) {
   const auto mean = frame_.sample_x.size() > 1 ? mean_.view() : sample_.view();
-  for (std::uint32_t i = 0; i < pixels_.count; ++i) {
-    if (!Contains(tile, pixels_.x[i], pixels_.y[i])) continue;
-    float* rgb = film.pixel(static_cast<int>(pixels_.x[i]) - film_x,
-                            static_cast<int>(pixels_.y[i]) - film_y);
-    rgb[0] = static_cast<float>(mean.r[i]);
-    rgb[1] = static_cast<float>(mean.g[i]);
-    rgb[2] = static_cast<float>(mean.b[i]);
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    float* rgb = film.pixel(tile.x0 - film_x, y - film_y);
+    for (int x = tile.x0; x < tile.x1; ++x, rgb += 3) {
+      const std::uint32_t i = PixelAt(x, y);
+      rgb[0] = static_cast<float>(mean.r[i]);
+      rgb[1] = static_cast<float>(mean.g[i]);
+      rgb[2] = static_cast<float>(mean.b[i]);
+    }
   }
   Charge(Phase::kAccumulate);
 }
@@ -400,12 +396,13 @@ void TileRenderer<Real>::OrderPixels(const PixelRect& tile) {
   const auto side =
       std::bit_ceil(static_cast<std::uint32_t>(std::max(tile.width(), tile.height())));
   pixels_.count = 0;
+  pixel_at_.resize(size);
   for (std::uint32_t code = 0; code < side * side; ++code) {
     const int x = static_cast<int>(EvenBits(code)), y = static_cast<int>(EvenBits(code >> 1));
     if (x >= tile.width() || y >= tile.height()) continue;
     pixels_.x[pixels_.count] = static_cast<Real>(tile.x0 + x);
     pixels_.y[pixels_.count] = static_cast<Real>(tile.y0 + y);
-    ++pixels_.count;
+    pixel_at_[static_cast<std::size_t>(y * tile.width() + x)] = pixels_.count++;
   }
 }
 

@@ -94,6 +94,11 @@ class TileRenderer {
   void ClearLayers(const PixelRect& tile);
   void RecordLayers(const HitBin& bin, const MaterialData<Real>& material);
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
+  // The pixel of pixels_ at a place of the picture within ordered_.
+  std::uint32_t PixelAt(int x, int y) const {
+    return pixel_at_[static_cast<std::size_t>((y - ordered_.y0) * ordered_.width() +
+                                              (x - ordered_.x0))];
+  }
   void Reserve(std::uint32_t count);
   void StartClock();
   void Charge(Phase phase);
@@ -110,14 +115,14 @@ class TileRenderer {
   std::uint32_t lanes_;
   Clock::time_point clock_;
 
-  PixelRect ordered_;          // the tile that pixels_ are of
-  PixelList pixels_;           // in Morton order
-  ColourStream<Real> sample_;  // of the list that is being traced
-  ColourStream<Real> mean_;    // by pixel of pixels_, where there are several samples
-  PixelList edges_;            // the pixels of pixels_ that get all samples
+  PixelRect ordered_;                    // the tile that pixels_ are of
+  PixelList pixels_;                     // in Morton order
+  std::vector<std::uint32_t> pixel_at_;  // position in pixels_, by row and column of ordered_
+  ColourStream<Real> sample_;            // of the list that is being traced
+  ColourStream<Real> mean_;              // by pixel of pixels_, where there are several samples
+  PixelList edges_;                      // the pixels of pixels_ that get all samples
   std::vector<std::uint32_t> position_of_edge_;     // in pixels_
   std::vector<scalar::FirstHit<Real>> first_hits_;  // by pixel of pixels_
-  std::vector<std::uint32_t> pixel_at_;             // position in pixels_, by row and column
   std::vector<bool> is_edge_;                       // by pixel of pixels_
   bool records_first_hits_ = false;
   Film* layered_ = nullptr;  // where the layers of the sample in work go; null: it leaves none
