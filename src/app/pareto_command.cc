@@ -118,6 +118,7 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
   const Result<Timed> timed = RenderTimed(scene, camera, setting, repetitions);
   if (!timed) return timed.error();
   ParetoPoint point{setting.target,
+                    PrecisionName(setting.options.precision),
                     setting.Name(),
                     timed.value().seconds,
                     RootMeanSquare(converged, timed.value().film),
@@ -143,7 +144,7 @@ Status MeasurePovRay(const Scene& scene, const Camera& camera, const RenderOptio
   for (const char* antialiasing :
        {"-A", "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4", "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"}) {
     std::vector<double> seconds;
-    ParetoPoint point{"POV-Ray", antialiasing, 0, 0, 0, 0, false};
+    ParetoPoint point{"POV-Ray", "", antialiasing, 0, 0, 0, 0, false};
     for (int i = 0; i < repetitions; ++i) {
       if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
       const Result<PovRender> render =

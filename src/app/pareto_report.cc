@@ -20,11 +20,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string CsvText(const std::vector<ParetoPoint>& points) {
-  std::string text = "renderer,setting,seconds,error,numeric,sampling,front\n";
+  std::string text = "renderer,precision,setting,seconds,error,numeric,sampling,front\n";
   const auto out = std::back_inserter(text);
   for (const ParetoPoint& point : points) {
-    fmt::format_to(out, "{},\"{}\",{},{},{},{},{}\n", point.renderer, point.setting, point.seconds,
-                   point.error, point.numeric, point.sampling, point.is_on_front ? 1 : 0);
+    fmt::format_to(out, "{},{},\"{}\",{},{},{},{},{}\n", point.renderer, point.precision,
+                   point.setting, point.seconds, point.error, point.numeric, point.sampling,
+                   point.is_on_front ? 1 : 0);
   }
   return text;
 }
@@ -37,6 +38,7 @@ std::string ReportJson(const ParetoTitle& title, const std::vector<ParetoPoint>&
                {"points", Json::array()}};
   for (const ParetoPoint& point : points) {
     json["points"].push_back({{"renderer", point.renderer},
+                              {"precision", point.precision},
                               {"setting", point.setting},
                               {"seconds", point.seconds},
                               {"error", point.error},
@@ -57,11 +59,16 @@ std::string Quoted(const std::string& text) {
   return quoted + "\"";
 }
 
-// One mark a setting, a colour a renderer, and the front as a line of steps.
+// What has a mark of its own on the chart.
+std::string Series(const ParetoPoint& point) {
+  return point.precision.empty() ? point.renderer : point.renderer + ", " + point.precision;
+}
+
+// One mark a setting, a colour a series, and the front as a line of steps.
 std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>& points,
                         const std::string& stem) {
-  std::set<std::string> renderers;
-  for (const ParetoPoint& point : points) renderers.insert(point.renderer);
+  std::set<std::string> series;
+  for (const ParetoPoint& point : points) series.insert(Series(point));
   std::string text;
   const auto out = std::back_inserter(text);
   const auto block = [&](const std::string& name, auto keep) {
@@ -78,10 +85,10 @@ std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>
   };
   int index = 0;
   std::string plots;
-  for (const std::string& renderer : renderers) {
-    block(fmt::format("r{}", index), [&](const ParetoPoint& p) { return p.renderer == renderer; });
+  for (const std::string& name : series) {
+    block(fmt::format("r{}", index), [&](const ParetoPoint& p) { return Series(p) == name; });
     plots += fmt::format(", $r{} with points pt {} ps 0.8 title {}", index, 5 + 2 * (index % 5),
-                         Quoted(renderer));
+                         Quoted(name));
     ++index;
   }
   block("front", [](const ParetoPoint& p) { return p.is_on_front; });

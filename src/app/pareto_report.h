@@ -13,12 +13,13 @@ namespace sheaf {
 // One setting and what it gave. Errors are RMSE over all channels of linear light, clamped to [0,
 // 1].
 struct ParetoPoint {
-  std::string renderer;  // a target, or "POV-Ray"
-  std::string setting;   // e.g. "strict, 4 spp, adaptive 0.05"
-  double seconds = 0;    // median of one frame
-  double error = 0;      // against the converged picture
-  double numeric = 0;    // against the same samples in double; 0 for a peer, whose are unknown
-  double sampling = 0;   // of the same samples in double against the converged picture
+  std::string renderer;   // a target, or "POV-Ray"
+  std::string precision;  // "strict", "fast" or "double"; empty for a peer
+  std::string setting;    // e.g. "strict, 4 spp, adaptive 0.05"
+  double seconds = 0;     // median of one frame
+  double error = 0;       // against the converged picture
+  double numeric = 0;     // against the same samples in double; 0 for a peer, whose are unknown
+  double sampling = 0;    // of the same samples in double against the converged picture
   bool is_on_front = false;
 };
 

@@ -1,12 +1,18 @@
 // Whole pictures of scenes at the edges of what can be described.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "src/formats/scene_json.h"
 #include "src/render/picture_metrics.h"
 #include "src/render/render.h"
+#include "src/scene/transform.h"
 #include "src/stress/probe.h"
 #include "src/stress/stress.h"
 
@@ -104,6 +110,22 @@ void ClearGlass(Report& report) {
   scene.materials = {Glass(1)};
   scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0}};
   ExpectUniform(report, RenderSmall(report, scene), 0.5, 0.5);
+  RenderStats stats;
+  const Result<Film> film = Render(scene, scene.cameras[0], Small(scene), &stats);
+  report.Expect(film.ok() && stats.rays.refracted > 0, "nothing goes through");
+  report.Expect(stats.rays.reflected == 0, "something is reflected");
+}
+
+// Indices so far apart that nearly all is reflected, or nearly every angle is beyond the critical.
+void ExtremeGlass(Report& report) {
+  for (const double ior : {1e-3, 0.5, 1e3}) {
+    Scene scene = NewScene();
+    scene.settings.max_depth = 8;
+    scene.materials = {Glass(ior)};
+    scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0},
+                     {"", Quad{{Vec3d(-3, -2, 1), {3, -2, 1}, {3, -2, -9}, {-3, -2, -9}}}, 0}};
+    ExpectUniform(report, RenderSmall(report, scene), 0, 0.5 + 1e-5);
+  }
 }
 
 // Between two mirrors, a ray to the limit: the number of rays stays that of the pixels.
@@ -226,6 +248,117 @@ void Nothing(Report& report) {
   report.Expect(!film && film.error().kind == ErrorKind::kUsage, "a width of 0 is accepted");
 }
 
+// A closed convex ball of triangles, as far from round as `rings` is low, with the normals of a
+// round one.
+Mesh SmoothBall(int rings) {
+  Mesh ball;
+  const auto add = [&](double theta, double phi) {
+    const glm::vec3 out(glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                   std::sin(theta) * std::sin(phi)));
+    ball.positions.push_back(out);
+    ball.normals.push_back(out);
+  };
+  const double pi = std::numbers::pi;
+  const auto around = static_cast<std::uint32_t>(2 * rings);
+  add(0, 0);
+  add(pi, 0);
+  for (int ring = 1; ring < rings; ++ring) {
+    for (std::uint32_t i = 0; i < around; ++i) add(pi * ring / rings, 2 * pi * i / around);
+  }
+  const auto at = [&](int ring, std::uint32_t i) {
+    return 2 + static_cast<std::uint32_t>(ring - 1) * around + i % around;
+  };
+  for (std::uint32_t i = 0; i < around; ++i) {
+    ball.triangles.push_back({0, at(1, i + 1), at(1, i)});
+    ball.triangles.push_back({1, at(rings - 1, i), at(rings - 1, i + 1)});
+    for (int ring = 1; ring + 1 < rings; ++ring) {
+      ball.triangles.push_back({at(ring, i), at(ring, i + 1), at(ring + 1, i + 1)});
+      ball.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring + 1, i)});
+    }
+  }
+  return ball;
+}
+
+// Faces that turn away from a light are dark and no others are shadowed: a convex body casts no
+// shadow on itself that its faces' normals do not tell already.
+void ShadowTerminator(Report& report) {
+  for (const int rings : {3, 5, 12}) {
+    Film films[2];
+    for (const bool shadows : {false, true}) {
+      Scene scene = NewScene();
+      scene.cameras[0].eye = Vec3d(0, 0.5, 3);
+      scene.settings.background = Colour(0.0);
+      Material white;
+      white.kd = 1;
+      scene.materials = {white};
+      scene.objects = {{"ball", SmoothBall(rings), 0}};
+      scene.lights = {LampAt({3, 1, 0.5}),
+                      {"sun", DirectionalLight{{0.3, -1, -0.2}}, Colour(1.0), 1, true}};
+      for (Light& light : scene.lights) light.casts_shadows = shadows;
+      films[shadows] = RenderSmall(report, scene);
+    }
+    report.Expect(CompareFilms(films[0], films[1], 0).pixels == 0,
+                  fmt::format("a ball of {} rings shadows itself", rings));
+    const auto [low, high] = std::minmax_element(films[1].rgb.begin(), films[1].rgb.end());
+    report.Expect(low != films[1].rgb.end() && *low == 0 && *high > 0.5f, "no dark or no lit side");
+  }
+}
+
+double LargestDifference(const Film& a, const Film& b) {
+  double most = a.rgb.size() == b.rgb.size() ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < a.rgb.size() && i < b.rgb.size(); ++i) {
+    most = std::max(most, std::abs(static_cast<double>(a.rgb[i] - b.rgb[i])));
+  }
+  return most;
+}
+
+// What leaves nothing is refused. What mirrors and stretches keeps normals where they belong: it is
+// the mesh whose vertices and normals are written so.
+void Transforms(Report& report) {
+  for (const char* transform : {R"({"scale": 0})", R"({"scale": [1, 0, 1]})", R"({"scale": 1e999})",
+                                R"({"matrix": [[1, 2, 3, 0], [2, 4, 6, 0], [0, 0, 1, 0]]})",
+                                R"({"matrix": [[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]})",
+                                R"([{"translate": [1, 2, 3]}, {"scale": [-0.0, 1, 1]}])"}) {
+    const std::string text = fmt::format(
+        R"({{"materials": [{{"name": "m"}}],
+             "objects": [{{"material": "m", "transform": {},
+                           "triangle": {{"vertices": [[0,0,0], [1,0,0], [0,1,0]]}}}}],
+             "cameras": [{{"name": "c", "eye": [0,0,0], "look_at": [0,0,-1], "fov_y": 60}}]}})",
+        transform);
+    const Result<Scene> scene = ParseSceneJson(text, "stress");
+    report.Expect(!scene, fmt::format("{} is accepted", transform));
+    if (scene) continue;
+    const std::string& message = scene.error().message;
+    report.Expect(message.find("stress:2:") == 0 && message.find("transform") != std::string::npos,
+                  "not the transform's place: " + message);
+  }
+  const Vec3d stretch(-0.5, 1.5, 0.75);
+  Film films[2];
+  for (const bool by_transform : {false, true}) {
+    Scene ball_alone;
+    ball_alone.objects = {{"ball", SmoothBall(16), 0}};
+    if (by_transform) {
+      Transform transform;
+      for (int axis = 0; axis < 3; ++axis) transform.linear[axis] *= stretch[axis];
+      const std::string refused = TransformScene(transform, &ball_alone);
+      report.Expect(refused.empty(), refused);
+    } else {
+      Mesh& ball = std::get<Mesh>(ball_alone.objects[0].shape);
+      for (glm::vec3& p : ball.positions) p = glm::vec3(glm::dvec3(p) * stretch);
+      for (glm::vec3& n : ball.normals) n = glm::vec3(glm::normalize(glm::dvec3(n) / stretch));
+      for (auto& triangle : ball.triangles) std::swap(triangle[1], triangle[2]);
+    }
+    Scene scene = NewScene();
+    scene.cameras[0].eye = Vec3d(0, 0.5, 4);
+    scene.materials = {Matt()};
+    scene.objects = ball_alone.objects;
+    scene.lights = {LampAt({4, 3, 4})};
+    films[by_transform] = RenderSmall(report, scene);
+  }
+  const double most = LargestDifference(films[0], films[1]);
+  report.Expect(most < 1e-5, fmt::format("the transform changes a pixel by {}", most));
+}
+
 void MirroredWinding(Report& report) {
   // Either winding faces the eye that sees it.
   Film films[2];
@@ -238,10 +371,7 @@ void MirroredWinding(Report& report) {
     scene.lights = {LampAt({0, 0, 0})};
     films[turned] = RenderSmall(report, scene);
   }
-  double most = 0;
-  for (std::size_t i = 0; i < films[0].rgb.size() && i < films[1].rgb.size(); ++i) {
-    most = std::max(most, std::abs(static_cast<double>(films[0].rgb[i] - films[1].rgb[i])));
-  }
+  const double most = LargestDifference(films[0], films[1]);
   report.Expect(most < 1e-6, fmt::format("the winding changes a pixel by {}", most));
 }
 
@@ -276,7 +406,7 @@ void OverbrightSurfaces(Report& report) {
 
 // Many faint lights add up to a bright one.
 void ManyLights(Report& report) {
-  const int count = report.is_thorough() ? 1000000 : 10000;
+  constexpr int kCount = 1000000;
   Scene scene = NewScene();
   scene.materials = {Matt()};
   scene.objects = {{"", Sphere{{0, 0, -4}, 1}, 0}};
@@ -285,15 +415,15 @@ void ManyLights(Report& report) {
   options.width = 4;
   options.height = 3;
   const Film one = RenderEverywhere(report, scene, options);
-  scene.lights.assign(static_cast<std::size_t>(count), scene.lights[0]);
-  for (Light& light : scene.lights) light.intensity = 1.0 / count;
+  scene.lights.assign(kCount, scene.lights[0]);
+  for (Light& light : scene.lights) light.intensity = 1.0 / kCount;
   const Film many = RenderEverywhere(report, scene, options);
   for (std::size_t i = 0; i < one.rgb.size(); ++i) {
     // A float sum of n terms may err by n roundoffs.
-    const double slack = 1e-6 + 6e-8 * count * static_cast<double>(one.rgb[i]);
+    const double slack = 1e-6 + 6e-8 * kCount * static_cast<double>(one.rgb[i]);
     report.Expect(
         std::abs(static_cast<double>(many.rgb[i] - one.rgb[i])) <= slack,
-        fmt::format("{} faint lights give {} and one {}", count, many.rgb[i], one.rgb[i]));
+        fmt::format("{} faint lights give {} and one {}", kCount, many.rgb[i], one.rgb[i]));
   }
 }
 
@@ -326,6 +456,7 @@ void ScaledPictures(Report& report) {
 
 constexpr Case kCases[] = {
     {"clear-glass", "ior 1: undeviated, no reflection", ClearGlass},
+    {"extreme-glass", "ior 1e-3 to 1e3: no light is made, the same bits", ExtremeGlass},
     {"nested-glass", "nested and touching, the eye inside: no light is made", NestedGlass},
     {"hall-of-mirrors", "reflectance 1, deep: one ray a pixel and depth", HallOfMirrors},
     {"mirror-series", "reflectance 1/2 all around: the sum of the geometric series", MirrorSeries},
@@ -333,11 +464,14 @@ constexpr Case kCases[] = {
     {"bad-materials", "NaN, negative, overflowing, no number: an error of one line", BadMaterials},
     {"shininess", "0, 1 and 1e6: no NaN", Shininess},
     {"mirrored-winding", "either winding: the normal faces the eye", MirroredWinding},
+    {"transforms", "singular: an error with its place; mirrored: the right normals", Transforms},
+    {"shadow-terminator", "coarse balls with smooth normals: no shadow of their own",
+     ShadowTerminator},
     {"odd-sizes", "1x1, 1xN, primes: the same bits as the crop", OddSizes},
     {"nothing", "no objects, no lights, no pixels: background, ambient, an error", Nothing},
     {"fields-of-view", "1e-3 and 179.9 degrees: finite, the same bits", FieldsOfView},
     {"overbright-surfaces", "kd + ks > 1: more than white, as it is", OverbrightSurfaces},
-    {"many-lights", "10,000 faint lights are one bright one", ManyLights},
+    {"many-lights", "a million faint lights are one bright one", ManyLights},
     {"scaled-pictures", "1e-6 to 1e6 in size, moved by 1e3 of it: no acne", ScaledPictures},
 };
 

@@ -14,59 +14,6 @@ namespace {
 
 constexpr float kNever = std::numeric_limits<float>::quiet_NaN();
 
-// The shapes as the arrays that src/scalar reads.
-struct FlatShapes {
-  std::vector<float> vertex[3][3], sphere[4];
-  std::vector<std::uint32_t> triangle_id, sphere_id;
-
-  explicit FlatShapes(const Shapes& shapes) {
-    std::uint32_t id = 0;
-    for (std::size_t i = 0; i < shapes.indices.size(); i += 3) {
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Vec position = shapes.vertex(shapes.indices[i + corner]);
-        vertex[corner][0].push_back(position.x);
-        vertex[corner][1].push_back(position.y);
-        vertex[corner][2].push_back(position.z);
-      }
-      // Without area, or with radius 0, a primitive is NaN to the specification, as the scene
-      // compiler makes it.
-      const std::size_t last = triangle_id.size();
-      const auto at = [&](int corner) {
-        return scalar::Vec3<double>{vertex[corner][0][last], vertex[corner][1][last],
-                                    vertex[corner][2][last]};
-      };
-      const auto area = Cross(at(1) - at(0), at(2) - at(0));
-      if (area.x == 0 && area.y == 0 && area.z == 0) vertex[0][0].back() = kNever;
-      triangle_id.push_back(id++);
-    }
-    for (std::size_t i = 0; i < shapes.spheres.size(); i += 4) {
-      for (std::size_t field = 0; field < 4; ++field) {
-        sphere[field].push_back(shapes.spheres[i + field]);
-      }
-      if (sphere[3].back() == 0) sphere[3].back() = kNever;
-      sphere_id.push_back(id++);
-    }
-  }
-
-  GeometryView<float> view() const {
-    GeometryView<float> geometry{};
-    geometry.spheres = {static_cast<std::uint32_t>(sphere_id.size()),
-                        sphere[0].data(),
-                        sphere[1].data(),
-                        sphere[2].data(),
-                        sphere[3].data(),
-                        sphere_id.data()};
-    geometry.triangles.count = static_cast<std::uint32_t>(triangle_id.size());
-    for (int corner = 0; corner < 3; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) {
-        geometry.triangles.vertex[corner][axis] = vertex[corner][axis].data();
-      }
-    }
-    geometry.triangles.id = triangle_id.data();
-    return geometry;
-  }
-};
-
 // Rays as the arrays that the kernels take.
 struct FlatRays {
   std::vector<float> number[6], t_min, t_max;
@@ -164,6 +111,53 @@ void Shapes::AddSphere(Vec center, float radius) {
 
 Vec Shapes::vertex(std::uint32_t i) const {
   return {vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]};
+}
+
+FlatShapes::FlatShapes(const Shapes& shapes) {
+  std::uint32_t id = 0;
+  for (std::size_t i = 0; i < shapes.indices.size(); i += 3) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Vec position = shapes.vertex(shapes.indices[i + corner]);
+      vertex[corner][0].push_back(position.x);
+      vertex[corner][1].push_back(position.y);
+      vertex[corner][2].push_back(position.z);
+    }
+    // Without area, or with radius 0, a primitive is NaN to the specification, as the scene
+    // compiler makes it.
+    const std::size_t last = triangle_id.size();
+    const auto at = [&](int corner) {
+      return scalar::Vec3<double>{vertex[corner][0][last], vertex[corner][1][last],
+                                  vertex[corner][2][last]};
+    };
+    const auto area = Cross(at(1) - at(0), at(2) - at(0));
+    if (area.x == 0 && area.y == 0 && area.z == 0) vertex[0][0].back() = kNever;
+    triangle_id.push_back(id++);
+  }
+  for (std::size_t i = 0; i < shapes.spheres.size(); i += 4) {
+    for (std::size_t field = 0; field < 4; ++field) {
+      sphere[field].push_back(shapes.spheres[i + field]);
+    }
+    if (sphere[3].back() == 0) sphere[3].back() = kNever;
+    sphere_id.push_back(id++);
+  }
+}
+
+GeometryView<float> FlatShapes::view() const {
+  GeometryView<float> geometry{};
+  geometry.spheres = {static_cast<std::uint32_t>(sphere_id.size()),
+                      sphere[0].data(),
+                      sphere[1].data(),
+                      sphere[2].data(),
+                      sphere[3].data(),
+                      sphere_id.data()};
+  geometry.triangles.count = static_cast<std::uint32_t>(triangle_id.size());
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      geometry.triangles.vertex[corner][axis] = vertex[corner][axis].data();
+    }
+  }
+  geometry.triangles.id = triangle_id.data();
+  return geometry;
 }
 
 bool IsHit(const Hit& hit) { return hit.primitive != kNoPrimitive; }

@@ -33,6 +33,15 @@ struct Shapes {
   }
 };
 
+// The shapes as the arrays that src/scalar reads.
+struct FlatShapes {
+  std::vector<float> vertex[3][3], sphere[4];
+  std::vector<std::uint32_t> triangle_id, sphere_id;
+
+  explicit FlatShapes(const Shapes& shapes);
+  GeometryView<float> view() const;
+};
+
 // The nearest hit of each ray, by src/scalar over every primitive. `report` learns where the
 // baseline's tree or a kernel of any target has other bits, nearest hit and occlusion alike.
 // kTreeOnly spares the specification over every primitive, for geometries too large for it.

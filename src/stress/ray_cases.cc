@@ -8,6 +8,7 @@
 #include <random>
 
 #include "src/bvh/geometry.h"
+#include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
 #include "src/scalar/surface.h"
 #include "src/stress/probe.h"
@@ -327,6 +328,111 @@ void SelfHits(Report& report) {
   }
 }
 
+// A parallelogram of two triangles in one plane, exactly: its corners are whole numbers times a
+// power of two.
+Shapes ExactParallelogram(Random& random) {
+  const float scale = std::ldexp(1.0f, static_cast<int>(random.In(-20, 20)));
+  // Near the origin, or up to a thousand times its size from it.
+  const float reach = std::pow(10.0f, random.In(0, 6));
+  const auto whole = [&](float most) {
+    const Vec v = random.InBox(most);
+    return Vec{std::round(v.x), std::round(v.y), std::round(v.z)} * scale;
+  };
+  const Vec a = whole(reach), side = whole(2000), other = whole(2000);
+  Shapes shapes;
+  shapes.AddQuad(a, a + side, a + side + other, a + other);
+  return shapes;
+}
+
+Shapes AnySphere(Random& random) {
+  Shapes shapes;
+  const float reach = std::pow(10.0f, random.In(-8, 8));
+  shapes.AddSphere(random.InBox(reach), std::pow(10.0f, random.In(-4, 4)));
+  return shapes;
+}
+
+// Whether a point lies on the surface's side of its plane by more than rounding can take away, as a
+// shadow ray from there sees the corners.
+bool LiesAbove(const Shapes& shapes, const scalar::Surface<float>& surface, Vec point) {
+  using Exact = scalar::Vec3<double>;
+  const auto corner = [&](std::uint32_t i) { return shapes.vertex(i).To<double>(); };
+  const Exact n = scalar::Normalize(Cross(corner(1) - corner(0), corner(3) - corner(0)));
+  const Exact p = point.To<double>();
+  double reach = 0;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Exact off = corner(i) - p;
+    reach = std::max(reach, std::sqrt(Dot(off, off)));
+  }
+  const double side = Dot(n, surface.face.To<double>()) > 0 ? 1 : -1;
+  return side * Dot(n, p - corner(0)) > 16 * 0x1p-24 * reach;
+}
+
+// One shape, seen from all around: what leaves it to either side, grazing included, does not come
+// back to it, and a light above it reaches it.
+void MeetNoOwnSurface(Report& report, Random& random, const Shapes& shapes, int count) {
+  const bool is_sphere = shapes.indices.empty();
+  const Vec center = is_sphere ? Vec{shapes.spheres[0], shapes.spheres[1], shapes.spheres[2]}
+                               : shapes.vertex(0) * 0.25f + shapes.vertex(1) * 0.25f +
+                                     shapes.vertex(2) * 0.25f + shapes.vertex(3) * 0.25f;
+  const Vec across = is_sphere ? Vec{} : shapes.vertex(2) - shapes.vertex(0);
+  const float size = is_sphere ? shapes.spheres[3] : std::sqrt(Dot(across, across)) / 2;
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    const float distance = size * std::pow(10.0f, random.In(0.5f, 4));
+    rays.push_back(Towards(center + random.Direction() * distance,
+                           center + random.Direction() * (0.9f * size)));
+  }
+  const std::vector<Hit> hits = TraceEverywhere(report, shapes, rays);
+  const FlatShapes flat(shapes);
+  const GeometryView<float> geometry = flat.view();
+  std::vector<Ray> leaving, inside;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // Far from the origin a small shape is hit by luck alone.
+    if (!IsHit(hits[i])) continue;
+    const std::uint32_t primitive = hits[i].primitive;
+    const auto surface =
+        is_sphere ? scalar::SphereSurface(rays[i], hits[i], geometry.spheres, primitive)
+                  : scalar::TriangleSurface(rays[i], hits[i], geometry.triangles, primitive);
+    const Vec along = scalar::Normalize(Cross(surface.normal, random.Direction()));
+    const float slope = std::pow(10.0f, random.In(-7, 1));
+    const Vec out = scalar::Normalize(along + surface.normal * slope);
+    const Vec in = scalar::Normalize(along - surface.normal * slope);
+    const Vec away = surface.face * surface.offset;
+    const Ray up{surface.position + away, out, surface.source};
+    const Ray down{surface.position - away, in, surface.source ^ kInsideBit};
+    // One of the two goes into a sphere, whose far side it may meet.
+    const bool from_within = is_sphere && surface.inside();
+    (from_within ? inside : leaving).push_back(up);
+    (is_sphere && !from_within ? inside : leaving).push_back(down);
+    if (from_within) continue;
+    for (const LightKind kind : {LightKind::kPointFromLight, LightKind::kPointFromSurface}) {
+      LightData<float> light{};
+      light.kind = kind;
+      const Vec lamp = surface.position + out * (size * std::pow(10.0f, random.In(-1, 1.5f)));
+      light.vector[0] = lamp.x, light.vector[1] = lamp.y, light.vector[2] = lamp.z;
+      light.falloff[0] = 1;
+      const auto incidence = scalar::IncidenceOf(light, surface);
+      if (!incidence.reaches || !(is_sphere || LiesAbove(shapes, surface, lamp))) continue;
+      leaving.push_back(scalar::ShadowRay(light, surface, incidence));
+    }
+  }
+  ExpectAllMiss(report, shapes, leaving);
+  if (inside.empty()) return;
+  const std::vector<Hit> ends = TraceEverywhere(report, shapes, inside);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    report.Expect(!IsHit(ends[i]) || ends[i].u == 1, "a ray inside meets the root that it left",
+                  &inside[i]);
+  }
+}
+
+void Acne(Report& report) {
+  const int shapes = report.is_thorough() ? 200000 : 200;  // 500 hits each: 1e8, or 1e5
+  Random random(10);
+  for (int i = 0; i < shapes; ++i) {
+    MeetNoOwnSurface(report, random, i % 2 ? AnySphere(random) : ExactParallelogram(random), 500);
+  }
+}
+
 void NearlyEqualSpheres(Report& report) {
   Shapes shapes = UnitSphere();
   shapes.AddSphere({0, 0, 0}, 1.00004f);
@@ -621,7 +727,7 @@ void Horizon(Report& report) {
 }
 
 void ManyInOnePlace(Report& report) {
-  const std::uint32_t count = report.is_thorough() ? 1000000 : 50000;
+  const std::uint32_t count = 1000000;
   Shapes point, line;
   for (std::uint32_t i = 0; i < count; ++i) {
     point.AddSphere({1, 2, 3}, 1);
@@ -745,6 +851,7 @@ constexpr Case kCases[] = {
     {"perturbed-spheres", "rays at the vertices of perturbed spheres: hit", PerturbedSpheres},
     {"self-hits", "spheres of 1e-4 to 1e4 at 1e-8 to 1e8: no new ray hits its own surface",
      SelfHits},
+    {"acne", "every scale, grazing too: no ray, no light's ray meets its own surface", Acne},
     {"nearly-equal-spheres", "radii 1 and 1.00004: both surfaces found", NearlyEqualSpheres},
     {"near-tangent", "0.1 % to either side of tangent, from 1 to 1e6 radii: judged right",
      NearTangent},
@@ -771,7 +878,7 @@ constexpr Case kCases[] = {
     {"fan", "1,000 triangles at a vertex: no leak", Fan},
     {"ulp-apart", "two surfaces 1 ULP apart: the nearer", UlpApart},
     {"horizon", "grazing rays along a floor: all that point down hit", Horizon},
-    {"many-in-one-place", "50,000 spheres in a point, in a line: the build ends, the right one",
+    {"many-in-one-place", "a million spheres in a point, in a line: the build ends, the right one",
      ManyInOnePlace},
     {"scaled-world", "a mesh scaled 1e-6 to 1e6, moved by 1e6 of it: no leak", ScaledWorld},
     {"random-scenes", "random scenes: every primitive, tree and target agree", RandomScenes},
