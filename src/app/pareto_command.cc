@@ -89,33 +89,25 @@ Film Shown(Film film) {
 
 struct Timed {
   Film film;
-  double seconds;  // median
+  double seconds;
 };
 
-Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting,
-                          int repetitions) {
+Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting) {
   RenderOptions options = setting.options;
   const Status chosen = ChooseTarget(setting.target, options);
   if (!chosen) return chosen.error();
-  std::vector<double> seconds;
-  Timed timed;
-  for (int i = 0; i < repetitions; ++i) {
-    FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
-    RenderStats stats;
-    Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
-    if (!film) return film.error();
-    timed.film = Shown(std::move(film).value());
-    seconds.push_back(stats.wall_seconds);
-  }
-  timed.seconds = Median(seconds);
-  return timed;
+  FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
+  RenderStats stats;
+  Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
+  if (!film) return film.error();
+  return Timed{Shown(std::move(film).value()), stats.wall_seconds};
 }
 
 // The error of a picture in two parts: its samples in double against the converged picture, and the
 // picture against its samples in double; otherwise antialiasing would hide the arithmetic.
 Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Setting setting,
-                                   int repetitions, const Film& converged) {
-  const Result<Timed> timed = RenderTimed(scene, camera, setting, repetitions);
+                                   const Film& converged) {
+  const Result<Timed> timed = RenderTimed(scene, camera, setting);
   if (!timed) return timed.error();
   ParetoPoint point{setting.target,
                     PrecisionName(setting.options.precision),
@@ -130,7 +122,7 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
   setting.target = simd::UsableTargets().front();
   setting.options.precision = Precision::kDouble;
   setting.options.threads = 0;
-  const Result<Timed> exact = RenderTimed(scene, camera, setting, 1);
+  const Result<Timed> exact = RenderTimed(scene, camera, setting);
   if (!exact) return exact.error();
   point.numeric = RootMeanSquare(exact.value().film, timed.value().film);
   point.sampling = RootMeanSquare(converged, exact.value().film);
@@ -138,25 +130,23 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
 }
 
 // POV-Ray's own antialiasing, where it is installed and knows the projection.
-Status MeasurePovRay(const Scene& scene, const Camera& camera, const RenderOptions& base,
-                     int repetitions, const Film& converged, std::vector<ParetoPoint>& points) {
-  if (!HasPovRay() || !std::holds_alternative<Perspective>(camera.projection)) return Done{};
-  for (const char* antialiasing :
-       {"-A", "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4", "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"}) {
-    std::vector<double> seconds;
-    ParetoPoint point{"POV-Ray", "", antialiasing, 0, 0, 0, 0, false};
-    for (int i = 0; i < repetitions; ++i) {
-      if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
-      const Result<PovRender> render =
-          RenderWithPovRay(scene, camera, base.width, base.height, antialiasing, PovPicture::kRead);
-      if (!render) return render.error();
-      seconds.push_back(render.value().seconds);
-      point.error = point.sampling = RootMeanSquare(converged, render.value().film);
-    }
-    point.seconds = Median(seconds);
-    points.push_back(point);
+constexpr const char* kPovRaySettings[] = {"-A",        "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4",
+                                           "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"};
+
+// One round over its settings, in their order.
+Result<std::vector<ParetoPoint>> MeasurePovRay(const Scene& scene, const Camera& camera,
+                                               const RenderOptions& base, const Film& converged) {
+  std::vector<ParetoPoint> points;
+  if (!HasPovRay() || !std::holds_alternative<Perspective>(camera.projection)) return points;
+  for (const char* antialiasing : kPovRaySettings) {
+    if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const Result<PovRender> render =
+        RenderWithPovRay(scene, camera, base.width, base.height, antialiasing, PovPicture::kRead);
+    if (!render) return render.error();
+    const double error = RootMeanSquare(converged, render.value().film);
+    points.push_back({"POV-Ray", "", antialiasing, render.value().seconds, error, 0, error, false});
   }
-  return Done{};
+  return points;
 }
 
 void Say(const ParetoRequest& request, const std::string& line) {
@@ -172,25 +162,54 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
   reference.options.threads = 0;
   const std::string name = Printable(camera.name);
   Say(request, fmt::format("{}: the converged picture, {}", name, reference.Name()));
-  const Result<Timed> converged = RenderTimed(scene, camera, reference, 1);
+  const Result<Timed> converged = RenderTimed(scene, camera, reference);
   if (!converged) return converged.error();
   const Film& film = converged.value().film;
 
+  // Round by round over all settings, because a machine's clock drifts: a setting's repetitions are
+  // spread over the run. The first round has the errors.
   const std::vector<Setting> settings = ListSettings(base);
   std::vector<ParetoPoint> points;
-  for (const Setting& setting : settings) {
-    if (points.size() % 20 == 0) {
-      Say(request, fmt::format("{}: {} of {} settings", name, points.size(), settings.size()));
+  std::vector<std::vector<double>> seconds;
+  bool has_peer = true;
+  for (int round = 0; round < repetitions; ++round) {
+    std::size_t index = 0;
+    const auto add_time = [&](double time) {
+      seconds.resize(std::max(seconds.size(), index + 1));
+      seconds[index++].push_back(time);
+    };
+    for (const Setting& setting : settings) {
+      if (index % 20 == 0) {
+        Say(request, fmt::format("{}: round {} of {}, {} of {} settings", name, round + 1,
+                                 repetitions, index, settings.size()));
+      }
+      if (round == 0) {
+        const Result<ParetoPoint> point = MeasureSetting(scene, camera, setting, film);
+        if (!point) return point.error();
+        points.push_back(point.value());
+        add_time(point.value().seconds);
+      } else {
+        const Result<Timed> timed = RenderTimed(scene, camera, setting);
+        if (!timed) return timed.error();
+        add_time(timed.value().seconds);
+      }
     }
-    Result<ParetoPoint> point = MeasureSetting(scene, camera, setting, repetitions, film);
-    if (!point) return point.error();
-    points.push_back(std::move(point).value());
+    if (!has_peer) continue;
+    if (HasPovRay()) Say(request, fmt::format("{}: round {}, POV-Ray", name, round + 1));
+    const auto peer = MeasurePovRay(scene, camera, base, film);
+    if (!peer && peer.error().kind == ErrorKind::kInterrupted) return peer.error();
+    if (!peer) {
+      std::fprintf(stderr, "sheaf: %s; the report goes without it\n", peer.error().message.c_str());
+      has_peer = false;
+      points.resize(settings.size());
+      continue;
+    }
+    for (const ParetoPoint& point : peer.value()) {
+      if (round == 0) points.push_back(point);
+      add_time(point.seconds);
+    }
   }
-  if (HasPovRay()) Say(request, name + ": POV-Ray");
-  const Status peer = MeasurePovRay(scene, camera, base, repetitions, film, points);
-  if (!peer && peer.error().kind == ErrorKind::kInterrupted) return peer.error();
-  if (!peer)
-    std::fprintf(stderr, "sheaf: %s; the report goes without it\n", peer.error().message.c_str());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].seconds = Median(seconds[i]);
   MarkFront(points);
   return points;
 }
