@@ -17,10 +17,12 @@ if ! command -v dpkg-query >/dev/null; then
   exit 0 # CMake will name what it does not find
 fi
 
+architecture=$(dpkg --print-architecture)
 missing=()
 for package in "${packages[@]}"; do
-  status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $status == installed ]] || missing+=("$package")
+  # A line an architecture: another one's library does not count.
+  status=$(dpkg-query --show --showformat='${db:Status-Status} ${Architecture}\n' "$package" 2>/dev/null || true)
+  grep -qxE "installed (all|$architecture)" <<<"$status" || missing+=("$package")
 done
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
