@@ -369,7 +369,8 @@ bool LiesAbove(const Shapes& shapes, const scalar::Surface<float>& surface, Vec 
 
 // One shape, seen from all around: what leaves it to either side, grazing included, does not come
 // back to it, and a light above it reaches it.
-void MeetNoOwnSurface(Report& report, Random& random, const Shapes& shapes, int count) {
+// Returns how many of `count` rays hit.
+std::uint64_t MeetNoOwnSurface(Report& report, Random& random, const Shapes& shapes, int count) {
   const bool is_sphere = shapes.indices.empty();
   const Vec center = is_sphere ? Vec{shapes.spheres[0], shapes.spheres[1], shapes.spheres[2]}
                                : shapes.vertex(0) * 0.25f + shapes.vertex(1) * 0.25f +
@@ -386,9 +387,11 @@ void MeetNoOwnSurface(Report& report, Random& random, const Shapes& shapes, int 
   const FlatShapes flat(shapes);
   const GeometryView<float> geometry = flat.view();
   std::vector<Ray> leaving, inside;
+  std::uint64_t hit_count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Far from the origin a small shape is hit by luck alone.
     if (!IsHit(hits[i])) continue;
+    ++hit_count;
     const std::uint32_t primitive = hits[i].primitive;
     const auto surface =
         is_sphere ? scalar::SphereSurface(rays[i], hits[i], geometry.spheres, primitive)
@@ -417,20 +420,24 @@ void MeetNoOwnSurface(Report& report, Random& random, const Shapes& shapes, int 
     }
   }
   ExpectAllMiss(report, shapes, leaving);
-  if (inside.empty()) return;
   const std::vector<Hit> ends = TraceEverywhere(report, shapes, inside);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     report.Expect(!IsHit(ends[i]) || ends[i].u == 1, "a ray inside meets the root that it left",
                   &inside[i]);
   }
+  return hit_count;
 }
 
 void Acne(Report& report) {
-  const int shapes = report.is_thorough() ? 300000 : 200;  // of 500 rays each, of which most hit
+  const std::uint64_t wanted = report.is_thorough() ? 100000000 : 60000;
+  constexpr int kRays = 500;
   Random random(10);
-  for (int i = 0; i < shapes; ++i) {
-    MeetNoOwnSurface(report, random, i % 2 ? AnySphere(random) : ExactParallelogram(random), 500);
+  std::uint64_t hits = 0;
+  for (int i = 0; hits < wanted && static_cast<std::uint64_t>(i) * kRays < 3 * wanted; ++i) {
+    hits += MeetNoOwnSurface(report, random, i % 2 ? AnySphere(random) : ExactParallelogram(random),
+                             kRays);
   }
+  report.Expect(hits >= wanted, fmt::format("only {} hits", hits));
 }
 
 void NearlyEqualSpheres(Report& report) {
