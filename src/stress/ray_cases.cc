@@ -351,20 +351,23 @@ Shapes AnySphere(Random& random) {
   return shapes;
 }
 
-// Whether a point lies on the surface's side of its plane by more than rounding can take away, as a
-// shadow ray from there sees the corners.
-bool LiesAbove(const Shapes& shapes, const scalar::Surface<float>& surface, Vec point) {
-  using Exact = scalar::Vec3<double>;
+// The parallelogram's normal on the surface's side, as exact as double is.
+scalar::Vec3<double> ExactNormal(const Shapes& shapes, const scalar::Surface<float>& surface) {
   const auto corner = [&](std::uint32_t i) { return shapes.vertex(i).To<double>(); };
-  const Exact n = scalar::Normalize(Cross(corner(1) - corner(0), corner(3) - corner(0)));
-  const Exact p = point.To<double>();
+  const auto n = scalar::Normalize(Cross(corner(1) - corner(0), corner(3) - corner(0)));
+  return Dot(n, surface.face.To<double>()) > 0 ? n : -n;
+}
+
+// Whether a point lies above the parallelogram by more than rounding can take away, as a shadow ray
+// from there sees the corners.
+bool LiesAbove(const Shapes& shapes, scalar::Vec3<double> normal, Vec point) {
   double reach = 0;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const Exact off = corner(i) - p;
+    const auto off = (shapes.vertex(i).To<double>()) - point.To<double>();
     reach = std::max(reach, std::sqrt(Dot(off, off)));
   }
-  const double side = Dot(n, surface.face.To<double>()) > 0 ? 1 : -1;
-  return side * Dot(n, p - corner(0)) > 16 * 0x1p-24 * reach;
+  const auto from_corner = point.To<double>() - shapes.vertex(0).To<double>();
+  return Dot(normal, from_corner) > 16 * 0x1p-24 * reach;
 }
 
 // One shape, seen from all around: what leaves it to either side, grazing included, does not come
@@ -403,11 +406,18 @@ std::uint64_t MeetNoOwnSurface(Report& report, Random& random, const Shapes& sha
     const Vec away = surface.face * surface.offset;
     const Ray up{surface.position + away, out, surface.source};
     const Ray down{surface.position - away, in, surface.source ^ kInsideBit};
-    // One of the two goes into a sphere, whose far side it may meet.
-    const bool from_within = is_sphere && surface.inside();
-    (from_within ? inside : leaving).push_back(up);
-    (is_sphere && !from_within ? inside : leaving).push_back(down);
-    if (from_within) continue;
+    if (is_sphere) {
+      // One of the two goes into the sphere, whose far side it may meet.
+      (surface.inside() ? inside : leaving).push_back(up);
+      (surface.inside() ? leaving : inside).push_back(down);
+      if (surface.inside()) continue;
+    } else {
+      // The steepness of the flattest is less than a roundoff of their directions: some of those
+      // really go to the other side.
+      const auto normal = ExactNormal(shapes, surface);
+      if (Dot(normal, out.To<double>()) > 0) leaving.push_back(up);
+      if (Dot(normal, in.To<double>()) < 0) leaving.push_back(down);
+    }
     for (const LightKind kind : {LightKind::kPointFromLight, LightKind::kPointFromSurface}) {
       LightData<float> light{};
       light.kind = kind;
@@ -415,7 +425,9 @@ std::uint64_t MeetNoOwnSurface(Report& report, Random& random, const Shapes& sha
       light.vector[0] = lamp.x, light.vector[1] = lamp.y, light.vector[2] = lamp.z;
       light.falloff[0] = 1;
       const auto incidence = scalar::IncidenceOf(light, surface);
-      if (!incidence.reaches || !(is_sphere || LiesAbove(shapes, surface, lamp))) continue;
+      if (!incidence.reaches ||
+          !(is_sphere || LiesAbove(shapes, ExactNormal(shapes, surface), lamp)))
+        continue;
       leaving.push_back(scalar::ShadowRay(light, surface, incidence));
     }
   }
