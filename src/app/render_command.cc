@@ -116,7 +116,7 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.tile_size = request.tile.size.value_or(options.tile_size);
   options.layers = request.layers;
   options.tile_costs = request.layers.has(Layer::kHeat) ? TileCosts::kOn : TileCosts::kOff;
-  if (const auto [size, part, parts] = request.tile; parts > 0) {
+  if (const int part = request.tile.part, parts = request.tile.parts; parts > 0) {
     if (parts > options.height) {
       return Usage(
           fmt::format("--tile {}/{}: the picture has {} rows", part, parts, options.height));
