@@ -3,9 +3,11 @@
 // TraceOccluded/WHAT/TARGET.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -73,12 +75,12 @@ void TraceRays(benchmark::State& state, const Geometry& geometry, const RayBatch
 }
 
 int Main(int argc, char** argv) {
-  const BenchScene scene = [] {
-    for (const SceneMaker& maker : SceneCatalogue()) {
-      if (std::string(maker.name) == "scan-10k") return maker.make();
-    }
-    return GeodesicSphere(22);
-  }();
+  const auto scenes = SceneCatalogue();
+  const auto maker = std::find_if(scenes.begin(), scenes.end(), [](const SceneMaker& m) {
+    return std::string_view(m.name) == "scan-10k";
+  });
+  if (maker == scenes.end()) return 1;
+  const BenchScene scene = maker->make();
   GeometryInput input;
   input.AddTriangles(scene.vertices, scene.indices);
   const Result<Geometry> geometry = Geometry::Build(input);

@@ -86,8 +86,8 @@ struct PathFields {
 
 // What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
 // are 0) and parameters of the hit. Triangle: barycentric weights of the second and third vertex.
-// Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so that
-// t + v is the root to twice the bits of float (0 in double and in fast arithmetic).
+// Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so
+// that t + v is the root to twice the bits of float (0 in double and in fast arithmetic).
 template <typename Real, template <typename> class Field>
 struct HitFields {
   Field<Real> t, u, v;

@@ -36,6 +36,7 @@ HWY_INLINE void StoreArrival(const MaterialData<Real>& material, const SurfaceVi
                   hn::LoadU(d, surfaces.normal_z + i), hn::LoadU(d, surfaces.direction_x + i),
                   hn::LoadU(d, surfaces.direction_y + i), hn::LoadU(d, surfaces.direction_z + i)));
   hn::Store(hn::IfThenElseZero(hn::Gt(towards, hn::Zero(d)), towards), d, splits.cos_i + at);
+  if (!(material.needs & kNeedsTransmission)) return;
   const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
   const auto source = LoadIds(d, surfaces.source + i);
   const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));

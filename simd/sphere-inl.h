@@ -63,21 +63,21 @@ HWY_INLINE hn::Mask<D> MayHitSphere(D d, V fx, V fy, V fz, V dx, V dy, V dz, V s
   return hn::Not(misses);
 }
 
-// What the roots of `kCount` pairs are computed from, as in IntersectSphere. A line's terms wait
+// What the roots of a vector of pairs are computed from, as in IntersectSphere. A line's terms wait
 // for one division and its root for the next, so each step is done for several lines before the
 // next.
-template <typename Real, std::uint32_t kCount>
+template <typename Real>
 struct SphereTerms {
   using Wide = hn::TFromD<WideLanes<Real>>;
 
-  alignas(kAlignment) Wide a[kCount], b[kCount], c[kCount];
-  alignas(kAlignment) Wide a_delta[kCount];  // NaN where the line misses
+  alignas(kAlignment) Wide a[kMaxLanes], b[kMaxLanes], c[kMaxLanes];
+  alignas(kAlignment) Wide a_delta[kMaxLanes];  // NaN where the line misses
 };
 
 // The terms of a vector of lines from `at` on. (fx, fy, fz) is the origin relative to the center.
-template <typename Real, std::uint32_t kCount, class DW, class W = hn::Vec<DW>>
+template <typename Real, class DW, class W = hn::Vec<DW>>
 HWY_INLINE void StoreTerms(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, std::uint32_t at,
-                           SphereTerms<Real, kCount>& terms) {
+                           SphereTerms<Real>& terms) {
   const W nan = hn::Set(dw, std::numeric_limits<double>::quiet_NaN());
   const W a = Dot(dw, dx, dy, dz, dx, dy, dz);
   // Negated after the sum: Neg is exact, so the bits are those of -(f . d).
@@ -97,8 +97,8 @@ HWY_INLINE void StoreTerms(DW dw, W fx, W fy, W fz, W dx, W dy, W dz, W r, std::
 
 // One root of each line: the far one in the lanes of `is_far`, the near one in the others; NaN
 // where the line misses.
-template <typename Real, std::uint32_t kCount, class DW, class W = hn::Vec<DW>>
-HWY_INLINE W SphereRoot(DW dw, const SphereTerms<Real, kCount>& terms, std::uint32_t at,
+template <typename Real, class DW, class W = hn::Vec<DW>>
+HWY_INLINE W SphereRoot(DW dw, const SphereTerms<Real>& terms, std::uint32_t at,
                         hn::Mask<DW> is_far) {
   const W a = hn::Load(dw, terms.a + at), b = hn::Load(dw, terms.b + at),
           c = hn::Load(dw, terms.c + at);
@@ -150,7 +150,7 @@ HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V 
   const NarrowLanes<Real> dn;
   const IdLanes<D> di;
   const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
-  SphereTerms<Real, kMaxLanes> terms;
+  SphereTerms<Real> terms;
   alignas(kAlignment) Real roots[kMaxLanes], rests[kMaxLanes], is_far[kMaxLanes];
   const VI inside_id = hn::Or(id, hn::Set(di, hn::TFromD<IdLanes<D>>{kInsideBit}));
   const auto inside = hn::RebindMask(d, hn::Eq(source, inside_id));

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -250,31 +249,17 @@ void Nothing(Report& report) {
 
 // A closed convex ball of triangles, as far from round as `rings` is low, with the normals of a
 // round one.
-Mesh SmoothBall(int rings) {
+Mesh SmoothBall(std::uint32_t rings) {
+  Shapes shapes;
+  AddSphereMesh(shapes, {0, 0, 0}, 1, rings);
   Mesh ball;
-  const auto add = [&](double theta, double phi) {
-    const glm::vec3 out(glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta),
-                                   std::sin(theta) * std::sin(phi)));
-    ball.positions.push_back(out);
-    ball.normals.push_back(out);
-  };
-  const double pi = std::numbers::pi;
-  const auto around = static_cast<std::uint32_t>(2 * rings);
-  add(0, 0);
-  add(pi, 0);
-  for (int ring = 1; ring < rings; ++ring) {
-    for (std::uint32_t i = 0; i < around; ++i) add(pi * ring / rings, 2 * pi * i / around);
+  for (std::uint32_t i = 0; i < shapes.vertex_count(); ++i) {
+    const Vec out = shapes.vertex(i);
+    ball.positions.emplace_back(out.x, out.y, out.z);
   }
-  const auto at = [&](int ring, std::uint32_t i) {
-    return 2 + static_cast<std::uint32_t>(ring - 1) * around + i % around;
-  };
-  for (std::uint32_t i = 0; i < around; ++i) {
-    ball.triangles.push_back({0, at(1, i + 1), at(1, i)});
-    ball.triangles.push_back({1, at(rings - 1, i), at(rings - 1, i + 1)});
-    for (int ring = 1; ring + 1 < rings; ++ring) {
-      ball.triangles.push_back({at(ring, i), at(ring, i + 1), at(ring + 1, i + 1)});
-      ball.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring + 1, i)});
-    }
+  ball.normals = ball.positions;
+  for (std::size_t i = 0; i < shapes.indices.size(); i += 3) {
+    ball.triangles.push_back({shapes.indices[i], shapes.indices[i + 1], shapes.indices[i + 2]});
   }
   return ball;
 }
@@ -282,7 +267,7 @@ Mesh SmoothBall(int rings) {
 // Faces that turn away from a light are dark and no others are shadowed: a convex body casts no
 // shadow on itself that its faces' normals do not tell already.
 void ShadowTerminator(Report& report) {
-  for (const int rings : {3, 5, 12}) {
+  for (const std::uint32_t rings : {3u, 5u, 12u}) {
     Film films[2];
     for (const bool shadows : {false, true}) {
       Scene scene = NewScene();

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "simd/target.h"
 #include "src/bvh/geometry.h"
@@ -111,6 +113,36 @@ void Shapes::AddSphere(Vec center, float radius) {
 
 Vec Shapes::vertex(std::uint32_t i) const {
   return {vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]};
+}
+
+void AddSphereMesh(Shapes& shapes, Vec center, float radius, std::uint32_t rings) {
+  const std::uint32_t around = 2 * rings;
+  const double pi = std::numbers::pi;
+  const auto point = [&](double theta, double phi) {
+    const Vec out = {static_cast<float>(std::sin(theta) * std::cos(phi)),
+                     static_cast<float>(std::cos(theta)),
+                     static_cast<float>(std::sin(theta) * std::sin(phi))};
+    return center + out * radius;
+  };
+  const std::uint32_t north = shapes.AddVertex(point(0, 0));
+  const std::uint32_t south = shapes.AddVertex(point(pi, 0));
+  const std::uint32_t first = shapes.vertex_count();
+  for (std::uint32_t ring = 1; ring < rings; ++ring) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      shapes.AddVertex(point(pi * ring / rings, 2 * pi * i / around));
+    }
+  }
+  const auto at = [&](std::uint32_t ring, std::uint32_t i) {
+    return first + (ring - 1) * around + i % around;
+  };
+  for (std::uint32_t i = 0; i < around; ++i) {
+    shapes.AddTriangle(north, at(1, i + 1), at(1, i));
+    shapes.AddTriangle(south, at(rings - 1, i), at(rings - 1, i + 1));
+    for (std::uint32_t ring = 1; ring + 1 < rings; ++ring) {
+      shapes.AddTriangle(at(ring, i), at(ring, i + 1), at(ring + 1, i + 1));
+      shapes.AddTriangle(at(ring, i), at(ring + 1, i + 1), at(ring + 1, i));
+    }
+  }
 }
 
 FlatShapes::FlatShapes(const Shapes& shapes) {

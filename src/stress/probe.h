@@ -33,6 +33,9 @@ struct Shapes {
   }
 };
 
+// A closed sphere of triangles, `rings` from pole to pole and twice as many around.
+void AddSphereMesh(Shapes& shapes, Vec center, float radius, std::uint32_t rings);
+
 // The shapes as the arrays that src/scalar reads.
 struct FlatShapes {
   std::vector<float> vertex[3][3], sphere[4];
