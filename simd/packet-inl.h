@@ -112,7 +112,8 @@ HWY_INLINE void GatherPacket(const RayView<Real>& rays, const RayIntervals<Real>
     packet.direction[0][lane] = rays.direction_x[i];
     packet.direction[1][lane] = rays.direction_y[i];
     packet.direction[2][lane] = rays.direction_z[i];
-    packet.t_min[lane] = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
+    const Real t_min = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
+    packet.t_min[lane] = std::max(t_min, -kDefaultTMax<Real>);
     const Real t_max = intervals.t_max ? intervals.t_max[i] : intervals.all_t_max;
     packet.t_best[lane] = lane < n ? std::min(t_max, kDefaultTMax<Real>) : kDone<Real>;
     packet.source[lane] = rays.source ? rays.source[i] : kNoPrimitive;

@@ -11,12 +11,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
+// MakeFinite of src/scalar/ray.h: an infinite interval admits every finite t. Stays NaN for NaN.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> LoadTMin(D d, const RayIntervals<Real>& intervals, std::uint32_t i) {
-  return intervals.t_min ? hn::LoadU(d, intervals.t_min + i) : hn::Set(d, intervals.all_t_min);
+  const auto lowest = hn::Set(d, -kDefaultTMax<Real>);
+  const auto t_min =
+      intervals.t_min ? hn::LoadU(d, intervals.t_min + i) : hn::Set(d, intervals.all_t_min);
+  return hn::IfThenElse(hn::Lt(t_min, lowest), lowest, t_min);
 }
 
-// An infinite t_max admits every finite t. Stays NaN for NaN.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> LoadTMax(D d, const RayIntervals<Real>& intervals, std::uint32_t i) {
   const auto largest = hn::Set(d, kDefaultTMax<Real>);

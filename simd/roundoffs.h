@@ -21,6 +21,10 @@ inline constexpr Real kPositionRoundoffs = 8 * kRoundoff<Real>;
 template <typename Wide>
 inline constexpr Wide kTermRoundoffs = 64 * kRoundoff<Wide>;
 
+// How far beyond a triangle's extent, relative to its reach from the ray's origin, a hit may lie.
+template <typename Real>
+inline constexpr Real kExtentRoundoffs = 8 * kRoundoff<Real>;
+
 // From a light, t = 1 is the surface and every rounding is relative to the distance d: one for the
 // direction, one for a vertex seen from the light, six for t. Along the normal n that is eight
 // times |n| . |d| componentwise.

@@ -13,7 +13,9 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Up to so many rays go on one by one.
 template <typename Real>
-inline constexpr std::uint32_t kFewRays = std::max(1u, kPacketSize<Real> / 4);
+HWY_INLINE std::uint32_t FewRays() {
+  return std::max(1u, LaneCount(Lanes<Real>()) / 4);
+}
 
 // The bundle whose lanes are the rays of `lanes` (bits), all of one octant.
 template <typename Real>
@@ -117,7 +119,7 @@ HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& pack
   UpdateRayEnds(packet, lanes, bundle);
   TraceBundle(tree, bundle, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     const std::uint32_t bits = MaskBits(d, met);
-    if (static_cast<std::uint32_t>(std::popcount(bits)) <= kFewRays<Real>) {
+    if (static_cast<std::uint32_t>(std::popcount(bits)) <= FewRays<Real>()) {
       TraceRays<kQuery>(tree, packet, bits, child);
     } else if (IsLeaf(child)) {
       LeafAgainstPacket<kQuery>(d, tree, child, CullLeaf(tree, child, bundle), packet, met);
@@ -151,15 +153,16 @@ HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packe
 template <Query kQuery, typename Real>
 HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lanes,
                             std::uint32_t start) {
+  const std::uint32_t lane_count = LaneCount(Lanes<Real>());
   while (lanes != 0) {
     const std::uint32_t octant = packet.octant[std::countr_zero(lanes)];
     std::uint32_t alike = 0;
-    for (std::uint32_t lane = 0; lane < kPacketSize<Real>; ++lane) {
+    for (std::uint32_t lane = 0; lane < lane_count; ++lane) {
       alike |= static_cast<std::uint32_t>(packet.octant[lane] == octant) << lane;
     }
     alike &= lanes;
     lanes &= ~alike;
-    if (static_cast<std::uint32_t>(std::popcount(alike)) <= kPacketSize<Real> / 2) {
+    if (static_cast<std::uint32_t>(std::popcount(alike)) <= lane_count / 2) {
       TraceRays<kQuery>(tree, packet, alike, start);
     } else {
       TracePacketFrom<kQuery>(tree, packet, alike, start);

@@ -27,11 +27,13 @@ HWY_INLINE hn::Vec<D> LoadPlanes(D d, const float* planes) {
 template <typename Real>
 HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
   constexpr std::size_t kLine = 64;
-  const char* from = reinterpret_cast<const char*>(&tree.nodes[child]);
+  const void* start;
   if (IsLeaf(child)) {
-    from = reinterpret_cast<const char*>(IsTriangleLeaf(child) ? TriangleBlock(tree, child)
-                                                               : SphereBlock(tree, child));
+    start = IsTriangleLeaf(child) ? TriangleBlock(tree, child) : SphereBlock(tree, child);
+  } else {
+    start = &tree.nodes[child];
   }
+  const char* from = static_cast<const char*>(start);
   for (std::size_t line = 0; line < sizeof(TreeNode) / kLine; ++line) {
     hwy::Prefetch(from + line * kLine);
   }

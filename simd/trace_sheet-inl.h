@@ -111,7 +111,7 @@ HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Tile<Real>& tile) {
   TraceBundle(tree, tile.bundle, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     std::uint32_t packets = MaskBits(d, met);
     const bool are_few =
-        static_cast<std::uint32_t>(std::popcount(packets)) <= kFewPackets<kQuery, Real>;
+        static_cast<std::uint32_t>(std::popcount(packets)) <= FewPackets<kQuery, Real>();
     if (!IsLeaf(child) && !are_few) return Visit::kDescend;
     for (; packets != 0; packets &= packets - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));

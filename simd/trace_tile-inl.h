@@ -18,9 +18,9 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 // Up to so many packets of a tile go on as packets. Occlusion ends at any hit, which leaves holes
 // in a tile, and it is asked of rays to points at all depths: it pays to give up tiles sooner.
 template <Query kQuery, typename Real>
-inline constexpr std::uint32_t kFewPackets = std::max(1u, kQuery == Query::kOccluded
-                                                              ? kPacketSize<Real> / 2
-                                                              : kPacketSize<Real> / 8);
+HWY_INLINE std::uint32_t FewPackets() {
+  return std::max(1u, LaneCount(Lanes<Real>()) / (kQuery == Query::kOccluded ? 2 : 8));
+}
 
 // Primitives a leaf, about.
 inline constexpr int kLeafFill = 5;
@@ -235,9 +235,11 @@ HWY_INLINE void LoadTriangles(const Tile<Real>& tile, const Real* block, std::ui
     }
     hn::Store(depth, d, leaf.depth + i);
     hn::Store(hn::Mul(hn::Add(width, depth), hn::Set(d, kTileSlack<Real>)), d, leaf.slack + i);
-    // As computed, a hit is nearest * (1 - slack) away at least.
-    const V least = hn::NegMulAdd(hn::Abs(nearest), hn::Set(d, kTileSlack<Real>), nearest);
-    hn::Store(least, d, leaf.nearest + i);
+    // A hit may lie before the nearest vertex by roundoffs of the furthest (KeepInExtent), or of t
+    // where that is denormal.
+    const V slack =
+        hn::MulAdd(depth, hn::Set(d, kTileSlack<Real>), hn::Set(d, Real(kBoxAbsoluteSlack)));
+    hn::Store(hn::Sub(nearest, slack), d, leaf.nearest + i);
   }
 }
 
@@ -348,7 +350,8 @@ HWY_INLINE std::uint32_t CullSpheres(const Tile<Real>& tile, const Real* block, 
     const V off_x = hn::Abs(hn::NegMulAdd(mx, z, x)), off_y = hn::Abs(hn::NegMulAdd(my, z, y));
     const V reach_x = hn::MulAdd(hx, depth, hn::MulAdd(grow_x, r, slack));
     const V reach_y = hn::MulAdd(hy, depth, hn::MulAdd(grow_y, r, slack));
-    const V nearest = hn::Sub(hn::MulSub(z, hn::Set(d, tile.sign), r), slack);
+    const V nearest = hn::Sub(hn::MulSub(z, hn::Set(d, tile.sign), r),
+                              hn::Add(slack, hn::Set(d, Real(kBoxAbsoluteSlack))));
     auto out = hn::Or(hn::Gt(off_x, reach_x), hn::Gt(off_y, reach_y));
     out = hn::Or(out, hn::Gt(nearest, hn::Set(d, tile.bundle.t_last[k])));
     met |= MaskBits(d, hn::AndNot(out, LanesBelow(d, i, n))) << i;
@@ -389,7 +392,7 @@ HWY_NOINLINE void TraceTile(const TreeView<Real>& tree, Tile<Real>& tile) {
       }
       return Visit::kDone;
     }
-    if (static_cast<std::uint32_t>(std::popcount(packets)) > kFewPackets<kQuery, Real>) {
+    if (static_cast<std::uint32_t>(std::popcount(packets)) > FewPackets<kQuery, Real>()) {
       return Visit::kDescend;
     }
     for (; packets != 0; packets &= packets - 1) {

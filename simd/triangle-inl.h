@@ -11,6 +11,7 @@
 #endif
 
 #include "simd/math-inl.h"
+#include "simd/roundoffs.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -25,14 +26,20 @@ HWY_INLINE V StrictMax(V a, V b) {
   return hn::IfThenElse(hn::Lt(a, b), b, a);
 }
 
+// Lanes where the sheared triangle lies beside the ray along one axis.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> IsBeside(D d, V a, V b, V c) {
+  const V zero = hn::Zero(d);
+  return hn::Or(hn::Gt(hn::Min(hn::Min(a, b), c), zero), hn::Lt(hn::Max(hn::Max(a, b), c), zero));
+}
+
 // Lanes where `position` lies outside the triangle's extent along an axis, with slack: ExtentOf and
 // IsOutside. (The sign of a zero makes no difference here, so the target's Min and Max will do.)
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> IsOutsideExtent(D d, V position, V a, V b, V c) {
   using Real = hn::TFromD<D>;
   const V low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
-  const V slack =
-      hn::Mul(hn::Max(hn::Neg(low), high), hn::Set(d, 4 * std::numeric_limits<Real>::epsilon()));
+  const V slack = hn::Mul(hn::Max(hn::Neg(low), high), hn::Set(d, kExtentRoundoffs<Real>));
   return hn::Or(hn::Lt(position, hn::Sub(low, slack)), hn::Gt(position, hn::Add(high, slack)));
 }
 
@@ -41,8 +48,7 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE void NarrowToExtent(D d, V direction, V a, V b, V c, V& enter, V& leave) {
   using Real = hn::TFromD<D>;
   const V low = StrictMin(StrictMin(a, b), c), high = StrictMax(StrictMax(a, b), c);
-  const V slack =
-      hn::Mul(StrictMax(hn::Neg(low), high), hn::Set(d, 4 * std::numeric_limits<Real>::epsilon()));
+  const V slack = hn::Mul(StrictMax(hn::Neg(low), high), hn::Set(d, kExtentRoundoffs<Real>));
   const V from = hn::Sub(low, slack), to = hn::Add(high, slack), zero = hn::Zero(d);
   const auto forward = hn::Gt(direction, zero), still = hn::Eq(direction, zero);
   const V first = hn::Div(hn::IfThenElse(forward, from, to), direction);
@@ -72,11 +78,16 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
   const M positive = hn::And(hn::And(hn::Ge(ua, zero), hn::Ge(vb, zero)), hn::Ge(wc, zero));
   const M negative = hn::And(hn::And(hn::Le(ua, zero), hn::Le(vb, zero)), hn::Le(wc, zero));
   const V sum = hn::Add(hn::Add(ua, vb), wc);
-  const M inside = hn::And(hn::And(lanes, hn::Or(positive, negative)), hn::Ne(sum, zero));
+  const M has_area = hn::Ge(hn::Abs(sum), hn::Set(d, std::numeric_limits<Real>::min()));
+  M inside = hn::And(hn::And(lanes, hn::Or(positive, negative)), has_area);
   if (hn::AllFalse(d, inside)) return inside;
+  inside = hn::AndNot(hn::Or(IsBeside(d, asx, bsx, csx), IsBeside(d, asy, bsy, csy)), inside);
 
-  const V scaled_t = hn::Add(hn::Add(hn::Mul(ua, az), hn::Mul(vb, bz)), hn::Mul(wc, cz));
-  t = Divide(d, Divide(d, scaled_t, sum), dz);
+  const V scale = hn::AndNot(sum, hn::Inf(d));  // ScaleOf
+  const V scaled_t =
+      hn::Add(hn::Add(hn::Mul(hn::Mul(ua, scale), az), hn::Mul(hn::Mul(vb, scale), bz)),
+              hn::Mul(hn::Mul(wc, scale), cz));
+  t = Divide(d, Divide(d, scaled_t, hn::Mul(sum, scale)), dz);
   const M outside = hn::And(inside, hn::Or(IsOutsideExtent(d, hn::Mul(t, dx), ax, bx, cx),
                                            IsOutsideExtent(d, hn::Mul(t, dy), ay, by, cy)));
   if (HWY_UNLIKELY(!hn::AllFalse(d, outside))) {

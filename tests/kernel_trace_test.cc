@@ -245,6 +245,18 @@ TEST_CASE_TEMPLATE("rays of one direction trace as the scalar specification", Re
   CHECK(hits > 2000);
 }
 
+Scene Scaled(Scene scene, double scale) {
+  for (Object& object : scene.objects) {
+    if (Sphere* sphere = std::get_if<Sphere>(&object.shape)) {
+      sphere->center *= scale;
+      sphere->radius *= scale;
+    } else {
+      for (Vec3d& v : std::get<Triangle>(object.shape).vertices) v *= scale;
+    }
+  }
+  return scene;
+}
+
 // Rays in the planes of triangles, through their vertices, along axes and box faces: where t is
 // mostly rounding error and boxes are touched at their rims.
 TEST_CASE_TEMPLATE("degenerate rays trace as the scalar specification", Real, float, double) {
@@ -284,20 +296,102 @@ TEST_CASE_TEMPLATE("degenerate rays trace as the scalar specification", Real, fl
   CHECK(hits > 2000);
 }
 
+// A fan of rays in the plane of triangles, from one origin: a tile's packets must keep hits that
+// rounding alone decides, up to the very t where they are.
+TEST_CASE_TEMPLATE("a tile in the plane of triangles traces as the scalar specification", Real,
+                   float, double) {
+  Random random(9);
+  const auto power = [&](double low, double high) { return std::exp2(Uniform(random, low, high)); };
+  std::uint32_t hits = 0;
+  for (int round = 0; round < 400; ++round) {
+    const Vec3d origin = round % 3 ? UniformPoint(random, -1, 1) * power(-6, 6) : Vec3d(0);
+    const Vec3d ahead = UniformPoint(random, -1, 1), aside = UniformPoint(random, -1, 1);
+    Scene scene;
+    scene.materials.push_back({});
+    for (int i = 0; i < 6; ++i) {
+      Vec3d v[3];
+      for (Vec3d& p : v) {
+        const double along = Uniform(random, 0.01, 1) * power(-8, 8);
+        const double across = Uniform(random, -1, 1) * power(-12, 2);
+        p = origin + along * ahead + across * aside;
+      }
+      scene.objects.push_back({"", Triangle{{v[0], v[1], v[2]}}, 0});
+    }
+    std::vector<scalar::Ray<Real>> rays;
+    const double spread = power(-24, -2);
+    for (int i = 0; i < 128; ++i) {
+      const Vec3d direction = ahead + Uniform(random, -spread, spread) * aside;
+      rays.push_back({As<Real>(origin), As<Real>(direction * power(-3, 3))});
+    }
+    Expected<Real> want(scene, rays);
+    hits += want.hit_count();
+    CheckEverywhere(want);
+    for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = want.hits[i].t;
+    CheckEverywhere<Real>({scene, rays});
+  }
+  CHECK(hits > 4000);
+}
+
+// Where t is denormal, and where it overflows to minus infinity in an interval without an end.
+TEST_CASE("rays at the ends of the range of t trace as the scalar specification") {
+  Scene near;
+  near.materials.push_back({});
+  const double z = 1.4 * 0x1p-83;
+  near.objects.push_back({"", Triangle{{Vec3d(-1, -1, z), {1, -1, z}, {0, 1, z}}}, 0});
+  const scalar::Ray<float> steep{
+      {0, 0, 0}, {0x1p60f, 0x1p60f, 0x1p66f}, kNoPrimitive, 0x1p-149f, 0x1p-149f};
+  const Expected<float> at_first(near, std::vector(64, steep));
+  CHECK(at_first.hit_count() == 64);
+  CheckEverywhere(at_first);
+
+  Scene behind;
+  behind.materials.push_back({});
+  for (int i = 0; i < 40; ++i) {
+    const double far = -1e20;
+    behind.objects.push_back(
+        {"", Triangle{{Vec3d(-1e20, -1e20, far), {1e20, -1e20, far}, {0, 1e20, far}}}, 0});
+  }
+  const float infinity = std::numeric_limits<float>::infinity();
+  const scalar::Ray<float> slow{{0, 0, 0}, {0, 0, 1e-30f}, kNoPrimitive, -infinity, infinity};
+  const Expected<float> never(behind, std::vector(64, slow));
+  CHECK(never.hit_count() == 0);
+  CheckEverywhere(never);
+}
+
+// Nothing under- or overflows where scales are far from 1: hits are those at scale 1, to the bit.
+TEST_CASE_TEMPLATE("a scene scaled by a power of two has the same hits", Real, float, double) {
+  Random random(10);
+  const Scene scene = CrowdedScene(random, 600);
+  std::vector<scalar::Ray<Real>> rays;
+  for (int i = 0; i < 300; ++i) {
+    const auto from = As<Real>(UniformPoint(random, -6, 6));
+    rays.push_back({from, As<Real>(UniformPoint(random, -2, 2)) - from});
+  }
+  const CompiledScene<Real> compiled = CompileScene<Real>(scene);
+  std::uint32_t hits = 0;
+  for (const int power : {-45, -30, 20, 45}) {
+    CAPTURE(power);
+    const Real scale = std::ldexp(Real(1), power);
+    const CompiledScene<Real> scaled = CompileScene<Real>(Scaled(scene, std::ldexp(1.0, power)));
+    for (const scalar::Ray<Real>& ray : rays) {
+      const auto hit = scalar::TraceClosest(compiled.geometry(), ray);
+      scalar::Ray<Real> as_large = ray;
+      as_large.origin = as_large.origin * scale;
+      as_large.direction = as_large.direction * scale;
+      CHECK(SameHit(scalar::TraceClosest(scaled.geometry(), as_large), hit));
+      hits += hit.primitive != kNoPrimitive;
+    }
+  }
+  CHECK(hits > 100);
+}
+
 // Beyond the limits of box tests: the same hits, only slower.
 TEST_CASE_TEMPLATE("rays and scenes without scale trace as the scalar specification", Real, float,
                    double) {
   Random random(5);
   for (const double scale : {1e-25, 1e-12, 1.0, 1e10, 1e14, 1e18}) {
-    Scene scene = CrowdedScene(random, 60);
-    for (Object& object : scene.objects) {
-      if (Sphere* sphere = std::get_if<Sphere>(&object.shape)) {
-        sphere->center *= scale;
-        sphere->radius *= scale;
-      } else {
-        for (Vec3d& v : std::get<Triangle>(object.shape).vertices) v *= scale;
-      }
-    }
+    CAPTURE(scale);
+    const Scene scene = Scaled(CrowdedScene(random, 60), scale);
     std::vector<scalar::Ray<Real>> rays;
     for (const double length : {1e-30, 1e-20, 1.0, 1e17}) {
       for (int i = 0; i < 128; ++i) {
@@ -306,7 +400,9 @@ TEST_CASE_TEMPLATE("rays and scenes without scale trace as the scalar specificat
         if (i % 8 == 0) rays.back().t_min = Real(-1);
       }
     }
-    CheckEverywhere<Real>({scene, rays});
+    const Expected<Real> want(scene, rays);
+    CHECK(want.hit_count() > 10);
+    CheckEverywhere(want);
   }
 }
 

@@ -5,16 +5,21 @@
 // the edge. Rounding is monotonic, so its sign is exact whenever it is not zero, and zero counts as
 // inside on both sides: no ray slips between them, at edges or vertices. A fused multiply-add
 // breaks this. Different from the paper: no double-precision fallback (it could only refuse hits
-// within rounding of a silhouette), no winding swap (either sign counts), t by two divisions, so
-// that no product underflows, and no hit outside the triangle's own extent.
+// within rounding of a silhouette), no winding swap (either sign counts), t by two divisions and
+// from scaled edge functions, so that no product over- or underflows, and no hit outside the
+// triangle's own extent.
 #ifndef SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
 #define SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
+#include "simd/roundoffs.h"
 #include "src/scalar/ray.h"
 
 namespace sheaf::scalar {
@@ -41,10 +46,6 @@ struct TriangleHit {
   Real u, v;  // barycentric weights of the second and third vertex
 };
 
-// How far beyond a triangle's extent, relative to its reach from the origin, a hit may lie.
-template <typename Real>
-inline constexpr Real kExtentSlack = 4 * std::numeric_limits<Real>::epsilon();
-
 template <typename Real>
 struct Extent {
   Real low, high;
@@ -55,8 +56,24 @@ struct Extent {
 template <typename Real>
 Extent<Real> ExtentOf(Real a, Real b, Real c) {
   const Real low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
-  const Real slack = std::max(-low, high) * kExtentSlack<Real>;
+  const Real slack = std::max(-low, high) * kExtentRoundoffs<Real>;
   return {low - slack, high + slack};
+}
+
+// A power of two that takes a positive or negative normal number to [2, 4): what is left of the
+// exponent's bits.
+template <typename Real>
+Real ScaleOf(Real x) {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+  const Bits exponent = std::bit_cast<Bits>(std::numeric_limits<Real>::infinity());
+  return std::bit_cast<Real>(~std::bit_cast<Bits>(x) & exponent);
+}
+
+// Whether the sheared triangle, of which these are the coordinates along one axis, lies beside the
+// ray.
+template <typename Real>
+bool IsBeside(Real a, Real b, Real c) {
+  return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
 }
 
 template <typename Real>
@@ -107,10 +124,16 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   // Every comparison is false for NaN: such a triangle or ray misses.
   const bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
   const Real det = (u + v) + w;
-  if (!inside || !(det != 0)) return std::nullopt;
+  // A denormal det counts as 0.
+  if (!inside || !(std::abs(det) >= std::numeric_limits<Real>::min())) return std::nullopt;
+  // Two edge functions that round to 0 would let the third alone decide, which holds for a ray far
+  // beside a triangle in whose plane it runs.
+  if (IsBeside(ax, bx, cx) || IsBeside(ay, by, cy)) return std::nullopt;
 
-  const Real scaled_t = (u * a[kz] + v * b[kz]) + w * c[kz];
-  Real t = (scaled_t / det) / dz;
+  // Exact but for its reach: an edge function is the square of a length.
+  const Real scale = ScaleOf(det);
+  const Real scaled_t = ((u * scale) * a[kz] + (v * scale) * b[kz]) + (w * scale) * c[kz];
+  Real t = (scaled_t / (det * scale)) / dz;
   // Along kz t is a mean of the vertices already.
   if (IsOutside(ExtentOf(a[kx], b[kx], c[kx]), t * direction[kx]) ||
       IsOutside(ExtentOf(a[ky], b[ky], c[ky]), t * direction[ky])) {

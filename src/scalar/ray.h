@@ -18,10 +18,11 @@ struct Ray {
   Real t_max = kDefaultTMax<Real>;
 };
 
-// An infinite t_max admits every finite t. Stays NaN for NaN.
+// An infinite interval admits every finite t. Stays NaN for NaN.
 template <typename Real>
-Real FiniteTMax(Real t_max) {
-  return t_max > kDefaultTMax<Real> ? kDefaultTMax<Real> : t_max;
+void MakeFinite(Ray<Real>& ray) {
+  if (ray.t_min < -kDefaultTMax<Real>) ray.t_min = -kDefaultTMax<Real>;
+  if (ray.t_max > kDefaultTMax<Real>) ray.t_max = kDefaultTMax<Real>;
 }
 
 template <typename Real>

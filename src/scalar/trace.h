@@ -71,7 +71,7 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray,
 // Equal t: the lowest primitive id wins, so that the order of tests cannot change a picture.
 template <typename Real>
 Hit<Real> TraceClosest(const GeometryView<Real>& geometry, Ray<Real> ray) {
-  ray.t_max = FiniteTMax(ray.t_max);
+  MakeFinite(ray);
   Hit<Real> closest{ray.t_max};
   if (!IsTraceable(ray)) return closest;
   // Lowering t_max to the closest hit so far keeps the interval test and the tie-break apart.
@@ -96,7 +96,7 @@ Hit<Real> TraceClosest(const GeometryView<Real>& geometry, Ray<Real> ray) {
 
 template <typename Real>
 bool TraceOccluded(const GeometryView<Real>& geometry, Ray<Real> ray) {
-  ray.t_max = FiniteTMax(ray.t_max);
+  MakeFinite(ray);
   if (!IsTraceable(ray)) return false;
   for (std::uint32_t i = 0; i < geometry.spheres.count; ++i) {
     if (HitSphere(ray, geometry.spheres, i)) return true;

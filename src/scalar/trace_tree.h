@@ -34,7 +34,7 @@ template <Query kQuery, typename Real>
 class TreeTracer {
  public:
   TreeTracer(const TreeView<Real>& tree, const Ray<Real>& ray) : tree_(tree), ray_(ray) {
-    ray_.t_max = FiniteTMax(ray_.t_max);
+    MakeFinite(ray_);
     closest_.t = ray_.t_max;
   }
 
