@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "src/core/even_bits.h"
 #include "src/core/strict_tan.h"
 #include "src/scalar/vec3.h"
 
@@ -20,13 +21,6 @@ using Vec = scalar::Vec3<double>;
 constexpr float kShadowEnd = 1 - 1e-4f;
 // Secondary rays start this part of the scene's extent above the surface.
 constexpr double kStartOffset = 1e-5;
-
-// The even bits of a Morton code, packed.
-std::uint32_t EvenBits(std::uint32_t code) {
-  std::uint32_t packed = 0;
-  for (int bit = 0; bit < 16; ++bit) packed |= (code >> 2 * bit & 1) << bit;
-  return packed;
-}
 
 void Put(const RayOutput<float>& rays, std::uint32_t i, Vec origin, Vec direction) {
   rays.origin_x[i] = static_cast<float>(origin.x);

@@ -68,7 +68,11 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     }
     if (needs & kNeedsTint) {
       const auto tint = [&](int channel) HWY_ATTR {
-        return has_colours ? Narrow<Real>(mean(triangles.colour, channel)) : hn::Set(dn, Real(1));
+        if (!has_colours) return hn::Set(dn, Real(1));
+        const W colour = of_local(triangles.colour[0][channel]);
+        const W along1 = hn::Sub(of_local(triangles.colour[1][channel]), colour);
+        const W along2 = hn::Sub(of_local(triangles.colour[2][channel]), colour);
+        return Narrow<Real>(hn::Add(hn::Add(colour, hn::Mul(along1, w1)), hn::Mul(along2, w2)));
       };
       hn::StoreU(tint(0), dn, surfaces.tint_r + i);
       hn::StoreU(tint(1), dn, surfaces.tint_g + i);

@@ -6,12 +6,14 @@
 #define SHEAF_SIMD_LIGHT_INL_H_
 #endif
 
+#include <limits>
+
 #include "simd/math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// The unit vector to the light, its cosine with the normal (NaN where the light lies on the point)
+// The unit vector to the light, its cosine with the normal (0 where the light lies on the point)
 // and the denominator of its falloff: IncidenceOf in src/scalar/shade.h.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceView<Real>& surfaces,
@@ -30,6 +32,10 @@ HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceVi
   }
   n_dot_l = Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
                 hn::LoadU(d, surfaces.normal_z + i), lx, ly, lz);
+  if (light.kind != LightKind::kDirectional) {
+    const auto is_apart = hn::Ge(squared, hn::Set(d, std::numeric_limits<Real>::min()));
+    n_dot_l = hn::IfThenElseZero(is_apart, n_dot_l);
+  }
   falloff = hn::Add(
       hn::Add(hn::Set(d, light.falloff[0]), hn::Mul(hn::Set(d, light.falloff[1]), distance)),
       hn::Mul(hn::Set(d, light.falloff[2]), squared));

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "bits.h"
 #include "random_scene.h"
 #include "src/bvh/validate_tree.h"
 #include "src/scalar/trace.h"
@@ -185,8 +186,6 @@ template <typename T>
 std::unique_ptr<T[]> Exact(std::uint32_t count) {
   return std::make_unique<T[]>(count);
 }
-
-bool SameBits(float a, float b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
 struct Rays {
   std::uint32_t count;

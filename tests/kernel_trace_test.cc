@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "bits.h"
 #include "random_scene.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
@@ -16,11 +17,6 @@ namespace {
 
 constexpr Coherence kHints[] = {Coherence::kUnknown, Coherence::kCommonOrigin, Coherence::kCoherent,
                                 Coherence::kIncoherent};
-
-template <typename Real>
-bool SameBits(Real a, Real b) {
-  return std::memcmp(&a, &b, sizeof(Real)) == 0;
-}
 
 template <typename Real>
 scalar::Vec3<Real> As(const Vec3d& v) {

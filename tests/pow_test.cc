@@ -107,6 +107,8 @@ TEST_CASE_TEMPLATE("exact values", Real, float, double) {
     CHECK(scalar::Pow(Real(1), p) == 1);
     if (p > 0) CHECK(scalar::Pow(Real(0), p) == 0);
     if (p > 0) CHECK(scalar::Pow(-Real(0), p) == 0);
+    // No power is below this, which is 0 as a float.
+    if (p > 1) CHECK(scalar::Pow(Real(0x1p-100), 10 * p) == Real(0x1p-1000));
   }
   for (int i = 0; i < 10000; ++i) {
     CHECK(scalar::Pow(static_cast<Real>(AnyFloat(random)), Real(0)) == 1);

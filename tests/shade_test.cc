@@ -206,6 +206,16 @@ TEST_CASE("a light at, below or behind the surface gives nothing and no NaN") {
     CHECK(std::isfinite(colour.x));
     CHECK(colour.x > 0);
   }
+  // Where the squared distance is no normal number, the light is at the point, or out of reach.
+  for (const float far : {1e-25f, 1e-22f, 0.5e-19f, 1.9e19f, 1e30f}) {
+    CAPTURE(far);
+    CHECK(IsBlack(UnderOneLight(PointLightAt({0, far, 0}, 1, 0, 0), material)));
+    CHECK(IsBlack(UnderOneLight(PointLightAt({far, far, far}, 1, 0, 0), material)));
+  }
+  for (const float far : {1.1e-19f, 1.8e19f}) {
+    const auto colour = UnderOneLight(PointLightAt({0, far, 0}, 1, 0, 0), White(1, 0, 1));
+    CHECK(colour.x == Lit(PointLightAt({0, 1, 0}, 1, 0, 0), White(1, 0, 1), Floor()).x);
+  }
   // Opposite the eye the half vector has no length: then there is no highlight, and no NaN.
   Surface<float> grazed = Floor();
   grazed.direction = {1, 0, 0};

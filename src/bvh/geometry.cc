@@ -10,6 +10,7 @@
 
 #include "src/bvh/build_tree.h"
 #include "src/core/parallel.h"
+#include "src/scalar/intersect_triangle.h"
 
 namespace sheaf {
 namespace {
@@ -30,17 +31,12 @@ bool IsFinite(const float* x, int count) {
   return std::all_of(x, x + count, [](float value) { return std::isfinite(value); });
 }
 
-// False for triangles without area, as computed from the very floats: no ray may hit them.
+// As computed from the very floats.
 bool HasArea(const float (&v)[9]) {
-  double a[3], b[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    a[axis] = static_cast<double>(v[3 + axis]) - static_cast<double>(v[axis]);
-    b[axis] = static_cast<double>(v[6 + axis]) - static_cast<double>(v[axis]);
-  }
-  const double x = a[1] * b[2] - a[2] * b[1];
-  const double y = a[2] * b[0] - a[0] * b[2];
-  const double z = a[0] * b[1] - a[1] * b[0];
-  return x * x + y * y + z * z > 0;
+  const auto corner = [&](int i) {
+    return scalar::Vec3<float>{v[3 * i], v[3 * i + 1], v[3 * i + 2]}.To<double>();
+  };
+  return scalar::HasArea({corner(0), corner(1), corner(2)});
 }
 
 std::string Name(std::uint32_t object, const char* kind, std::size_t index) {

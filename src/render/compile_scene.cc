@@ -8,7 +8,7 @@
 
 #include "simd/roundoffs.h"
 #include "src/core/strict_tan.h"
-#include "src/scalar/vec3.h"
+#include "src/scalar/intersect_triangle.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -165,8 +165,7 @@ class GeometryWriter {
       bounds_.Include(v);
       Put(compiled_.triangle_vertex, vertex, i, v);
     }
-    const auto area = scalar::Cross(rounded[1] - rounded[0], rounded[2] - rounded[0]);
-    if (!(scalar::Dot(area, area) > 0)) compiled_.triangle_vertex[0][0][i] = kNever;
+    if (!scalar::HasArea(rounded)) compiled_.triangle_vertex[0][0][i] = kNever;
     compiled_.triangle_id[i] = NewId(i | kTriangleBit);
     return i;
   }

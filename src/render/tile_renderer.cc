@@ -9,19 +9,13 @@
 #include "simd/generate_shadow.h"
 #include "simd/shade_ambient.h"
 #include "simd/triangle_surface.h"
+#include "src/core/even_bits.h"
 #include "src/render/store_layers.h"
 #include "src/render/tint_surfaces.h"
 #include "src/scalar/render_adaptively.h"
 
 namespace sheaf {
 namespace {
-
-// Every second bit of a Morton code, from bit 0.
-std::uint32_t EvenBits(std::uint32_t code) {
-  std::uint32_t value = 0;
-  for (int bit = 0; bit < 16; ++bit) value |= (code >> bit) & (1u << bit);
-  return value;
-}
 
 template <typename Real>
 bool Contains(const PixelRect& rect, Real x, Real y) {

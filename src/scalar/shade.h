@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "src/scalar/pow.h"
@@ -63,7 +64,7 @@ template <typename Real>
 struct Incidence {
   Vec3<Real> to_light;  // from the surface to the light's position; a directional light's vector
   Vec3<Real> l;         // unit
-  Real n_dot_l;         // NaN where the light lies on the point: then it gives nothing
+  Real n_dot_l;         // 0 where the light lies on the point or is too far: it gives nothing
   Real attenuation;     // 1 / (kc + kl r + kq r^2), of a spot light times its cone's share
   bool reaches;         // whether the surface faces the light, within the cone of a spot light
 };
@@ -90,6 +91,10 @@ Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& s
     incidence.l = incidence.to_light / distance;
   }
   incidence.n_dot_l = Dot(surface.normal, incidence.l);
+  // The length of l is 1 only where the square is a normal number; an infinite one makes l 0.
+  const bool is_at_point =
+      light.kind != LightKind::kDirectional && !(squared >= std::numeric_limits<Real>::min());
+  if (is_at_point) incidence.n_dot_l = 0;
   incidence.attenuation =
       1 / ((light.falloff[0] + light.falloff[1] * distance) + light.falloff[2] * squared);
   // Nor does a shading normal light the back of a face.

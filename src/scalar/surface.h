@@ -95,7 +95,13 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
       surface.normal = (turn ? -unit : unit).template To<Real>();
     }
   }
-  if (triangles.colour[0][0]) surface.tint = mean(triangles.colour).template To<Real>();
+  if (triangles.colour[0][0]) {
+    // Equal colours give that colour, exactly: a mesh without any keeps its white.
+    const auto colour = [&](int vertex) { return VertexValue(triangles.colour, vertex, i); };
+    const Vec3<W> first = colour(0);
+    surface.tint =
+        ((first + (colour(1) - first) * w1) + (colour(2) - first) * w2).template To<Real>();
+  }
   if (triangles.uv[0][0]) {
     const auto coordinate = [&](int axis) {
       const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };

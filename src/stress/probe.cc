@@ -161,8 +161,7 @@ FlatShapes::FlatShapes(const Shapes& shapes) {
       return scalar::Vec3<double>{vertex[corner][0][last], vertex[corner][1][last],
                                   vertex[corner][2][last]};
     };
-    const auto area = Cross(at(1) - at(0), at(2) - at(0));
-    if (area.x == 0 && area.y == 0 && area.z == 0) vertex[0][0].back() = kNever;
+    if (!scalar::HasArea({at(0), at(1), at(2)})) vertex[0][0].back() = kNever;
     triangle_id.push_back(id++);
   }
   for (std::size_t i = 0; i < shapes.spheres.size(); i += 4) {
