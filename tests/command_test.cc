@@ -473,6 +473,11 @@ TEST_CASE("parts of a picture, merged, are the whole to the bit") {
     merge.push_back(merge.back());
     if (ending != ".pfm") CHECK(work.Run(merge).code == 2);
   }
+  const std::string part = ReadText(work / "part1.png");
+  CHECK(work.Run({"merge", work / "part1.png", work / "part2.png", work / "part3.png", "-o",
+                  work / "part1.png"})
+            .code == 2);
+  CHECK(ReadText(work / "part1.png") == part);
   // Crops know their place as well.
   render("left.png", {"--crop", "0,0,20,47"});
   render("right.png", {"--crop", "20,0,61,47"});
@@ -726,6 +731,59 @@ TEST_CASE("no output replaces another file of the same run") {
       work.Run({"render", scene, "-q", "--size", "8x8", "-o", picture, "--json=" + picture});
   CHECK(over_picture.code == 2);
   CHECK(!std::filesystem::exists(picture));
+  // Two spellings of one path that is not there yet.
+  fs::create_directory(work / "in");
+  CHECK(work.Run({"render", scene, "-q", "--size", "8x8", "-o", picture,
+                  "--json=" + (work / "in/../b.png")})
+            .code == 2);
+  CHECK(!std::filesystem::exists(picture));
+}
+
+// A textured triangle in a.json, which includes b.json; the texture is c-texture-1.png.
+void WriteTexturedScene(const Workspace& work) {
+  Picture8 image{2, 2, std::vector<std::uint8_t>(12, 200)};
+  REQUIRE(WritePng(image, Transfer::kLinear, work / "c-texture-1.png").ok());
+  WriteText(work / "b.json", R"({"materials": [{"name": "m",
+      "base_colour": {"texture": {"image": "c-texture-1.png"}}, "ambient": 1}],
+      "objects": [{"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, "material": "m"}],
+      "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0]}]})");
+  WriteText(work / "a.json", R"({"objects": [{"include": "b.json"}]})");
+}
+
+TEST_CASE("no output replaces a file that the scene is read from") {
+  const Workspace work;
+  WriteTexturedScene(work);
+  const std::string scene = work / "a.json", texture = work / "c-texture-1.png";
+  const std::string included = ReadText(work / "b.json"), pixels = ReadText(texture);
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"render", scene, "-q", "--size", "8x8", "-o", texture},
+           {"render", scene, "-q", "--size", "8x8", "-o", work / "{camera}-texture-1.png"},
+           {"render", scene, "-q", "--size", "8x8", "-o", work / "x.png",
+            "--json=" + (work / "b.json")},
+           {"convert", scene, "-o", work / "b.json"},
+           {"convert", scene, "-o", work / "c.json"}}) {
+    const Outcome outcome = work.Run(arguments);
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(LineCount(outcome.err) == 1);
+    CHECK(Contains(outcome.err, "would replace a file that this run reads"));
+  }
+  CHECK(ReadText(work / "b.json") == included);
+  CHECK(ReadText(texture) == pixels);
+  CHECK(work.Files() == std::vector<std::string>{"a.json", "b.json", "c-texture-1.png"});
+  CHECK(work.Run({"convert", scene, "-o", work / "d.json"}).code == 0);
+  CHECK(ReadText(work / "d-texture-1.png") == pixels);
+}
+
+TEST_CASE("a link that leads nowhere yet stays a link") {
+  const Workspace work;
+  fs::create_directory(work / "in");
+  fs::create_symlink("in/b.png", work / "a.png");
+  CHECK(work.Render({"-q", "-o", work / "a.png"}).code == 0);
+  CHECK(fs::is_symlink(work / "a.png"));
+  CHECK(ReadPng(work / "in/b.png").ok());
+  fs::create_symlink("none/b.png", work / "c.png");
+  CHECK(work.Render({"-q", "-o", work / "c.png"}).code == 4);
 }
 
 TEST_CASE("--json=FILE writes the file and swallows no other argument") {

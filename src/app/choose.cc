@@ -41,8 +41,13 @@ Error UnknownName(std::string_view option, std::string_view kind, const std::str
 Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
 
 bool IsSameFile(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
   std::error_code ignored;
-  return a == b || std::filesystem::equivalent(a, b, ignored);
+  const auto full = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  };
+  const fs::path place = full(a);
+  return fs::equivalent(a, b, ignored) || (!place.empty() && place == full(b));
 }
 
 std::optional<std::vector<std::string>> ParseNames(const std::string& text) {

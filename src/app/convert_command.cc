@@ -31,22 +31,36 @@ Status WriteImage(const Image& image, const std::string& path) {
   return WritePng(picture, Transfer::kLinear, path);
 }
 
-// Textures lie beside the scene that names them, as PNG.
-Status WriteTextures(Scene* scene, const std::string& output) {
-  const std::filesystem::path path(output);
-  std::map<const Image*, std::shared_ptr<const Image>> written;
+// Textures lie beside the scene that names them, as PNG: their names by image.
+using TextureNames = std::map<const Image*, std::string>;
+
+TextureNames NameTextures(const Scene& scene, const std::filesystem::path& output) {
+  TextureNames names;
+  for (const Material& material : scene.materials) {
+    const auto* texture = std::get_if<Texture>(&material.base_colour);
+    if (texture == nullptr) continue;
+    const auto [entry, is_new] = names.try_emplace(texture->image.get());
+    if (!is_new) continue;
+    entry->second = fmt::format("{}-texture-{}.png", output.stem().string(), names.size());
+  }
+  return names;
+}
+
+std::string PathBeside(const std::string& output, const std::string& name) {
+  return (std::filesystem::path(output).parent_path() / name).string();
+}
+
+Status WriteTextures(const TextureNames& names, const std::string& output, Scene* scene) {
+  std::map<const Image*, std::shared_ptr<const Image>> renamed;
+  for (const auto& [image, name] : names) {
+    if (const Status status = WriteImage(*image, PathBeside(output, name)); !status) return status;
+    Image copy = *image;
+    copy.name = name;
+    renamed[image] = std::make_shared<const Image>(std::move(copy));
+  }
   for (Material& material : scene->materials) {
     auto* texture = std::get_if<Texture>(&material.base_colour);
-    if (texture == nullptr) continue;
-    std::shared_ptr<const Image>& named = written[texture->image.get()];
-    if (!named) {
-      Image copy = *texture->image;
-      copy.name = fmt::format("{}-texture-{}.png", path.stem().string(), written.size());
-      const Status status = WriteImage(copy, (path.parent_path() / copy.name).string());
-      if (!status) return status;
-      named = std::make_shared<const Image>(std::move(copy));
-    }
-    texture->image = named;
+    if (texture != nullptr) texture->image = renamed[texture->image.get()];
   }
   return Done{};
 }
@@ -57,13 +71,20 @@ Status ConvertScene(const ConvertRequest& request) {
         fmt::format("-o {}: a scene becomes scene JSON, whose name ends in .json", request.output));
   }
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
-  Result<Scene> scene = OpenScene(request.input, request.options);
-  if (!scene) return scene.error();
-  if (const Status written = WriteTextures(&scene.value(), request.output); !written) {
-    return written;
+  Result<OpenedScene> opened = OpenSceneAndFiles(request.input, request.options);
+  if (!opened) return opened.error();
+  Scene& scene = opened.value().scene;
+  const TextureNames textures = NameTextures(scene, request.output);
+  std::vector<Output> outputs = {{"-o", request.output}};
+  for (const auto& [image, name] : textures) {
+    outputs.push_back({"-o", PathBeside(request.output, name)});
   }
-  MakeNamesUnique(&scene.value());
-  return WriteFileWhole(request.output, SceneJsonText(scene.value()));
+  const Status apart = CheckOutputs(outputs, opened.value().files);
+  if (!apart) return apart;
+  const Status written = WriteTextures(textures, request.output, &scene);
+  if (!written) return written;
+  MakeNamesUnique(&scene);
+  return WriteFileWhole(request.output, SceneJsonText(scene));
 }
 
 // ---- Pictures ----
@@ -128,9 +149,8 @@ CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request) {
 }
 
 Status RunConvert(const ConvertRequest& request) {
-  if (IsSameFile(request.input, request.output)) {
-    return Usage(fmt::format("-o {}: this is the input", request.output));
-  }
+  const Status apart = CheckOutputs({{"-o", request.output}}, {request.input});
+  if (!apart) return apart;
   if (CheckPicturePath(request.input)) return ConvertPicture(request);
   if (IsScenePath(request.input)) return ConvertScene(request);
   return Usage(

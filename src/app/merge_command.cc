@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/app/choose.h"
+#include "src/app/open_scene.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 
@@ -111,6 +112,8 @@ CLI::App* AddMergeCommand(CLI::App& app, MergeRequest& request) {
 Status RunMerge(const MergeRequest& request) {
   if (const Status known = CheckPicturePath(request.output); !known) return known;
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
+  const Status apart = CheckOutputs({{"-o", request.output}}, request.parts);
+  if (!apart) return apart;
   std::vector<Part> parts;
   for (const std::string& path : request.parts) {
     Result<ReadPictureResult> picture = ReadPicture(path);

@@ -1,6 +1,9 @@
 #include "src/app/open_scene.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -8,6 +11,7 @@
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
+#include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
 
 namespace sheaf {
@@ -66,19 +70,44 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   read.cone_sides = options.cone_sides.value_or(read.cone_sides);
   Result<ReadSceneResult> result = ReadScene(path, read);
   if (!result) return result.error();
-  OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings)};
+  OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings),
+                     std::move(result.value().files)};
   if (const Status aimed = Aim(options, &opened.scene); !aimed) return aimed.error();
   if (result.value().key_light == KeyLight::kAdded) AimKeyLight(&opened.scene);
   return opened;
 }
 
-Result<Scene> OpenScene(const std::string& path, const SceneOptions& options) {
+Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options) {
   Result<OpenedScene> opened = OpenSceneWithWarnings(path, options);
-  if (!opened) return opened.error();
+  if (!opened) return opened;
   for (const std::string& warning : opened.value().warnings) {
     std::fprintf(stderr, "sheaf: warning: %s\n", warning.c_str());
   }
+  return opened;
+}
+
+Result<Scene> OpenScene(const std::string& path, const SceneOptions& options) {
+  Result<OpenedScene> opened = OpenSceneAndFiles(path, options);
+  if (!opened) return opened.error();
   return std::move(opened.value().scene);
+}
+
+Status CheckOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const auto& [option, path] = outputs[i];
+    if (path.empty() || path == "-") continue;
+    const auto is_same = [&](const std::string& other) { return IsSameFile(path, other); };
+    if (std::any_of(inputs.begin(), inputs.end(), is_same)) {
+      return Usage(fmt::format("{} {}: would replace a file that this run reads", option,
+                               PrintablePath(path)));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!is_same(outputs[k].path)) continue;
+      return Usage(fmt::format("{} {}: another output of this run has the same path", option,
+                               PrintablePath(path)));
+    }
+  }
+  return Done{};
 }
 
 }  // namespace sheaf

@@ -28,11 +28,22 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options);
 struct OpenedScene {
   Scene scene;
   std::vector<std::string> warnings;
+  std::vector<std::string> files;  // that it was read from
 };
 Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options);
 
 // The same; prints the warnings on stderr.
+Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options);
 Result<Scene> OpenScene(const std::string& path, const SceneOptions& options);
+
+// A file that a command writes, and the option that asks for it.
+struct Output {
+  const char* option;
+  std::string path;  // "-" and none at all are no file
+};
+
+// No output may replace a file that the same run reads, or another output. kUsage otherwise.
+Status CheckOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
 
 }  // namespace sheaf
 

@@ -56,22 +56,13 @@ Status CheckRequest(const RenderRequest& request) {
   return Done{};
 }
 
-// No output may replace another file of the same run, the scene least of all.
-Status CheckOverwriting(const RenderRequest& request, const std::vector<Frame>& frames) {
-  const auto clash = [](const char* option, const std::string& path) {
-    return Usage(fmt::format("{} {}: another file of this run has the same path", option, path));
-  };
-  if (IsSameFile(request.statistics, request.scene)) return clash("--json", request.statistics);
+std::vector<Output> OutputsOf(const RenderRequest& request, const std::vector<Frame>& frames) {
+  std::vector<Output> outputs = {{"--json", request.statistics}};
   for (const Frame& frame : frames) {
-    if (IsSameFile(frame.path, request.scene)) return clash("-o", frame.path);
-    if (IsSameFile(frame.path, request.statistics)) return clash("--json", request.statistics);
-    for (const auto& [layer, path] : frame.beside) {
-      for (const std::string& other : {request.scene, request.statistics}) {
-        if (IsSameFile(path, other)) return clash("--aov", path);
-      }
-    }
+    outputs.push_back({"-o", frame.path});
+    for (const auto& [layer, path] : frame.beside) outputs.push_back({"--aov", path});
   }
-  return Done{};
+  return outputs;
 }
 
 Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {
@@ -313,16 +304,18 @@ Status RunRender(const RenderRequest& request) {
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckRequest(request); !sound) return sound;
   const ProgressStyle style = ChooseProgressStyle(request);
-  const Result<Scene> scene = [&] {
+  const Result<OpenedScene> opened = [&] {
     const ReadingNotice notice(style, request.scene);
-    return OpenScene(request.scene, request.options);
+    return OpenSceneAndFiles(request.scene, request.options);
   }();
-  if (!scene) return scene.error();
-  const Result<RenderOptions> options = MergeOptions(request, scene.value().settings);
+  if (!opened) return opened.error();
+  const Scene& scene = opened.value().scene;
+  const Result<RenderOptions> options = MergeOptions(request, scene.settings);
   if (!options) return options.error();
-  const Result<std::vector<Frame>> frames = PlanFrames(request, scene.value());
+  const Result<std::vector<Frame>> frames = PlanFrames(request, scene);
   if (!frames) return frames.error();
-  if (const Status apart = CheckOverwriting(request, frames.value()); !apart) return apart;
+  const Status apart = CheckOutputs(OutputsOf(request, frames.value()), opened.value().files);
+  if (!apart) return apart;
 
   CatchInterrupts();
   const std::size_t count = frames.value().size();
@@ -330,8 +323,8 @@ Status RunRender(const RenderRequest& request) {
   for (const Frame& frame : frames.value()) {
     std::string label = Printable(frame.camera->name);
     if (count > 1) label += fmt::format(" {}/{}", records.size() + 1, count);
-    Result<FrameRecord> record = RenderFrame(scene.value(), request.scene, frame, options.value(),
-                                             request.bits, style, label);
+    Result<FrameRecord> record =
+        RenderFrame(scene, request.scene, frame, options.value(), request.bits, style, label);
     if (!record) return record.error();
     // Not fmt::print: it throws where stderr is gone, which is no reason to stop.
     std::vector<std::string> paths = {frame.path};

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -35,6 +36,17 @@ bool NamesDevice(const std::string& path) {
   return path.starts_with("/dev/") || path.starts_with("/proc/");
 }
 
+// Where a link leads to a file that is not there yet, that file. stat has refused circles.
+std::string FollowDangling(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  fs::path target = path;
+  while (fs::is_symlink(target, ignored)) {
+    target = target.parent_path() / fs::read_symlink(target, ignored);
+  }
+  return target.string();
+}
+
 Result<Destination> Resolve(const std::string& path) {
   if (path.empty()) return Error{ErrorKind::kInputOutput, "the output path is empty"};
   struct stat status;
@@ -53,6 +65,7 @@ Result<Destination> Resolve(const std::string& path) {
     // A pipe behind /proc/self/fd has no real path; it is opened by the one it has.
     if (real && destination.kind == PathKind::kRegular) destination.path = real.get();
   }
+  if (!exists) destination.path = FollowDangling(path);
   destination.folder = destination.path.substr(0, destination.path.rfind('/') + 1);
   if (destination.folder.empty()) destination.folder = "./";
   return destination;

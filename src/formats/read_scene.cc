@@ -62,10 +62,9 @@ KeyLight Complete(Scene* scene) {
 }  // namespace
 
 SceneFiles::SceneFiles(const std::string& scene, const ReadOptions& options)
-    : options_(options), root_(Canonical(fs::path(scene).parent_path() / ".")) {}
+    : options_(options), root_(Canonical(fs::path(scene).parent_path() / ".")), paths_{scene} {}
 
-Result<std::string> SceneFiles::Resolve(const std::string& from,
-                                        const std::string& reference) const {
+Result<std::string> SceneFiles::Resolve(const std::string& from, const std::string& reference) {
   if (reference.empty() || reference.find('\0') != std::string::npos) {
     return Error{ErrorKind::kScene, "no name of a file"};
   }
@@ -76,6 +75,7 @@ Result<std::string> SceneFiles::Resolve(const std::string& from,
       return Error{ErrorKind::kScene, "lies outside the scene's folder (see --allow-outside)"};
     }
   }
+  paths_.push_back(path.string());
   return path.string();
 }
 
@@ -143,7 +143,7 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
       // Models of today are made for displays; Haines' are older than that.
       if (FormatOf(path) != Format::kNff) scene.value().settings.transfer = Transfer::kSrgb;
     }
-    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings()};
+    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings(), files.paths()};
   } catch (const std::bad_alloc&) {
     return InputError(path, "not enough memory to read the file");
   }

@@ -33,7 +33,7 @@ class SceneFiles {
 
   // The path of `reference`, as the file `from` names it: relative to its folder. An error, without
   // a place, where it leaves the scene's folder and may not.
-  Result<std::string> Resolve(const std::string& from, const std::string& reference) const;
+  Result<std::string> Resolve(const std::string& from, const std::string& reference);
 
   // Includes: false where `path` is being read already.
   bool Enter(const std::string& path);
@@ -43,11 +43,15 @@ class SceneFiles {
   void Warn(std::string line);
   const std::vector<std::string>& warnings() const { return warnings_; }
 
+  // The scene itself and whatever was resolved.
+  const std::vector<std::string>& paths() const { return paths_; }
+
  private:
   ReadOptions options_;
   std::filesystem::path root_;
   std::vector<std::filesystem::path> open_;
   std::vector<std::string> warnings_;
+  std::vector<std::string> paths_;
 };
 
 // Whether some reader takes files with this ending: .json, .nff, .obj, .ply, .gltf or .glb, in any
@@ -69,6 +73,7 @@ struct ReadSceneResult {
   Scene scene;
   KeyLight key_light = KeyLight::kAbsent;  // kAdded: the scene's first light
   std::vector<std::string> warnings;
+  std::vector<std::string> files;  // that it was read from
 };
 
 // A scene that can be rendered: a model without a camera gets one that frames it, without a light a
