@@ -169,6 +169,20 @@ TEST_CASE("NFF") {
   CheckSurvives(folder, "a.nff", kNff);
 }
 
+TEST_CASE("NFF: a cone on three lines, as Haines has it, or on one") {
+  const Folder folder;
+  const std::string sphere = "s 0 0 0 1\n";
+  const Scene one = ReadOrFail(folder.Write("one.nff", "c 0 0 0 0.5 0 1 0 0.25\n" + sphere));
+  for (const char* text : {"c\n0 0 0 0.5\n0 1 0 0.25\n", "c\n\n# base\n0 0 0 0.5\n0 1 0 0.25\n",
+                           "c 0 0 0 0.5\n0 1 0 0.25\n"}) {
+    const Scene scene = ReadOrFail(folder.Write("a.nff", text + sphere));
+    REQUIRE(scene.objects.size() == 2);
+    CHECK(MeshAt(scene, 1).positions == MeshAt(one, 1).positions);
+    CHECK(MeshAt(scene, 1).normals == MeshAt(one, 1).normals);
+    CHECK(MeshAt(scene, 1).triangles == MeshAt(one, 1).triangles);
+  }
+}
+
 TEST_CASE("NFF that is wrong") {
   const Folder folder;
   const auto refused = [&](const std::string& text, const std::string& part) {
@@ -185,6 +199,8 @@ TEST_CASE("NFF that is wrong") {
   refused("v\nfrom 0 0 0\nto 0 0 0\n", ":3: expected \"at\"");
   refused("f 1 1 1 1 0 1 0.5 0\n", ":1: fill index");
   refused("c 0 0 0 1 0 0 0 1\n", "one point");
+  refused("c\n0 0 0 1\n", ":2: the file ends within a cone");
+  refused("c\n0 0 0 1\ns 1 2 3 4\n", ":3: cone apex: expected a number");
 }
 
 // ---- PLY ----

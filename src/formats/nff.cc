@@ -79,9 +79,13 @@ class NffReader {
            ReadNumber(what, &out->z, low, high);
   }
 
-  // The lines of an entity that takes several.
+  bool IsLineDone() { return scanner_.Remainder().empty() || scanner_.Remainder().front() == '#'; }
+
+  // The lines of an entity that takes several; blank ones and comments may stand between.
   bool NextLineOf(const char* what) {
-    if (scanner_.NextLine()) return true;
+    while (scanner_.NextLine()) {
+      if (!IsLineDone()) return true;
+    }
     Fail(fmt::format("the file ends within {}", what));
     return false;
   }
@@ -254,8 +258,12 @@ class NffReader {
   void ReadCone() {
     Vec3d base, apex;
     double base_radius = 0, apex_radius = 0;
-    if (!ReadTriple("cone base", &base) || !ReadNumber("cone base radius", &base_radius) ||
-        !ReadTriple("cone apex", &apex) || !ReadNumber("cone apex radius", &apex_radius)) {
+    // Haines has three lines, others write one.
+    const auto go_on = [this] { return !IsLineDone() || NextLineOf("a cone"); };
+    if (!go_on() || !ReadTriple("cone base", &base) || !go_on() ||
+        !ReadNumber("cone base radius", &base_radius) || !go_on() ||
+        !ReadTriple("cone apex", &apex) || !go_on() ||
+        !ReadNumber("cone apex radius", &apex_radius)) {
       return;
     }
     ExpectEnd();
