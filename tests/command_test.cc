@@ -198,6 +198,10 @@ TEST_CASE("compare finds no bit that differs between targets and threads") {
        std::vector<std::vector<std::string>>{{"compare", kScene, "--targets", "scalar"},
                                              {"compare", kScene, "--targets", "scalar,avx9"},
                                              {"compare", kScene, "--threads", "0"},
+                                             {"compare", kScene, "--precision", "fast"},
+                                             {"compare", kScene, "--targets", "all,scalar"},
+                                             {"compare", kScene, "--fail", "rmse=1"},
+                                             {"compare", kScene, "--transfer", "srgb"},
                                              {"compare", kScene, kScene},
                                              {"compare", kScene, "--camera", "frnt"}}) {
     const Outcome outcome = work.Run(wrong);
@@ -214,13 +218,15 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   arguments.push_back("--json=" + before);
   const Outcome first = work.Run(arguments);
   REQUIRE(first.code == 0);
-  CHECK(Contains(first.out, "95 % interval"));
+  CHECK(Contains(first.out, "range of all"));
+  CHECK(!Contains(first.out, "95 % interval"));
   json report = json::parse(ReadText(before));
   REQUIRE(report["rows"].size() >= 3);
   CHECK(report["rows"][0]["target"] == "scalar");
   for (const json& row : report["rows"]) {
     CHECK(row["seconds"].size() == 5);
     const json& rate = row["rays_per_second"];
+    CHECK(rate["interval"] == "range");
     CHECK(rate["low"] <= rate["median"]);
     CHECK(rate["median"] <= rate["high"]);
     CHECK(row["rays"] == report["rows"][0]["rays"]);
@@ -254,6 +260,35 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   few.insert(few.end(), {"--targets", "auto", "--baseline", before});
   few[5] = "2";
   CHECK(Contains(work.Run(few).out, "too few repetitions"));
+  few[5] = "6";
+  CHECK(Contains(work.Run(few).out, "95 % interval"));
+
+  // Another frame, as far as the file tells.
+  few[5] = "1";
+  const auto refuse = [&](const json& changed, const char* says) {
+    WriteText(before, changed.dump());
+    const Outcome outcome = work.Run(few);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(Contains(outcome.err, says));
+  };
+  json changed = report;
+  changed["scene"] = "elsewhere/other.json";
+  refuse(changed, "its scene is \"other.json\"");
+  changed = report;
+  for (json& row : changed["rows"]) row["rays"] = 1;
+  refuse(changed, "its number of rays is 1");
+  // The result replaces nothing that was read.
+  WriteText(before, report.dump());
+  few.push_back("--json=" + before);
+  CHECK(work.Run(few).code == 2);
+  CHECK(json::parse(ReadText(before)) == report);
+  const std::string scene = work / "scene.json";
+  fs::copy_file(kScene, scene);
+  CHECK(work.Run({"bench", scene, "--size", "8x8", "--repetitions", "1", "--json=" + scene}).code ==
+        2);
+  CHECK(ReadText(scene) == ReadText(kScene));
+  few.pop_back();
 
   WriteText(before, "{}");
   few[5] = "1";
@@ -335,10 +370,15 @@ TEST_CASE("compare measures pictures, and --fail decides") {
   CHECK(pictures[0]["rmse"].get<double>() == doctest::Approx(std::sqrt(0.25 / 96)));
   CHECK(pictures[0]["psnr"].get<double>() == doctest::Approx(-10 * std::log10(0.25 / 96)));
   CHECK(pictures[0]["largest"] == 0.5);
+  CHECK(pictures[0]["over"].is_number_integer());
   CHECK(pictures[0]["over"] == 1);
+  CHECK(pictures[0]["identical"] == false);
+  CHECK(pictures[0]["finite"] == true);
   CHECK(pictures[0]["flip"].get<double>() > 0);
   CHECK(pictures[1]["rmse"] == 0);
   CHECK(pictures[1]["flip"] == 0);
+  CHECK(pictures[1]["psnr"].is_null());
+  CHECK(pictures[1]["identical"] == true);
   const auto judge = [&](const std::string& limits) {
     return work.Run({"compare", work / "a.pfm", work / "b.pfm", "--fail", limits});
   };
@@ -346,6 +386,29 @@ TEST_CASE("compare measures pictures, and --fail decides") {
   CHECK(judge("over=0").code == 1);
   CHECK(judge("psnr=26").code == 1);
   CHECK(Contains(judge("over=0").out, "over 1 breaks the limit of 0"));
+  CHECK(Contains(judge("rmse=1,over=0,psnr=26").out,
+                 "; over 1 breaks the limit of 0, psnr 25.8433 breaks the limit of 26\n"));
+  const Outcome several = work.Run(
+      {"compare", work / "a.pfm", work / "b.pfm", "--json", "--fail", "largest=0.25,rmse=0"});
+  CHECK(json::parse(several.out)["pictures"][0]["broken"].size() == 2);
+
+  // NaN passes no limit, though it equals itself; white against black is 0 dB.
+  Film nan = a, black(8, 4), white(8, 4);
+  nan.rgb[5] = std::nanf("");
+  std::fill(black.rgb.begin(), black.rgb.end(), 0.0f);
+  std::fill(white.rgb.begin(), white.rgb.end(), 1.0f);
+  REQUIRE(WritePfm(nan, work / "nan.pfm").ok());
+  REQUIRE(WritePfm(black, work / "black.pfm").ok());
+  REQUIRE(WritePfm(white, work / "white.pfm").ok());
+  const Outcome not_finite =
+      work.Run({"compare", work / "nan.pfm", work / "nan.pfm", "--fail", "over=100000", "--json"});
+  CHECK(not_finite.code == 1);
+  const json entry = json::parse(not_finite.out)["pictures"][0];
+  CHECK(entry["identical"] == true);
+  CHECK(entry["finite"] == false);
+  CHECK(work.Run({"compare", work / "a.pfm", work / "nan.pfm"}).code == 0);
+  CHECK(
+      Contains(work.Run({"compare", work / "black.pfm", work / "white.pfm"}).out, "psnr 0.00 dB"));
   CHECK(judge("psnr").code == 2);
   CHECK(judge("beauty=1").code == 2);
   CHECK(work.Run({"compare", work / "a.pfm"}).code == 2);
@@ -456,7 +519,7 @@ TEST_CASE("parts of a picture, merged, are the whole to the bit") {
   };
   for (const std::string ending : {".png", ".pfm", ".exr"}) {
     CAPTURE(ending);
-    std::vector<std::string> merge = {"merge", "-o", work / ("merged" + ending)};
+    std::vector<std::string> merge = {"merge", "--output", work / ("merged" + ending)};
     for (const char* part : {"1", "2", "3"}) {
       render("part" + (part + ending), {"--tile", std::string(part) + "/3"});
       merge.push_back(work / ("part" + (part + ending)));
@@ -489,6 +552,60 @@ TEST_CASE("parts of a picture, merged, are the whole to the bit") {
             .code == 2);
 }
 
+TEST_CASE("merge joins parts of one picture alone") {
+  const Workspace work;
+  const auto render = [&](const std::string& name, const std::vector<std::string>& more,
+                          const std::string& scene = kScene) {
+    std::vector<std::string> arguments = {"render", scene,    "-o",   work / name,
+                                          "-q",     "--size", "32x24"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    REQUIRE(work.Run(arguments).code == 0);
+  };
+  fs::create_directory(work / "moved");
+  fs::copy_file(kScene, work / "moved/crystal-ball.json");
+  fs::copy_file(kScene, work / "other.json");
+  for (const std::string ending : {".png", ".exr"}) {
+    render("1" + ending, {"--tile", "1/2"});
+    render("2" + ending, {"--tile", "2/2"}, work / "moved/crystal-ball.json");
+    render("camera" + ending, {"--tile", "2/2", "--camera", "up"});
+    render("samples" + ending, {"--tile", "2/2", "--spp", "2"});
+    render("scene" + ending, {"--tile", "2/2"}, work / "other.json");
+    const auto merge = [&](const std::string& name) {
+      return work.Run({"merge", work / ("1" + ending), work / name, "-o", work / ("m" + ending)});
+    };
+    CHECK(merge("2" + ending).code == 0);  // the same scene in another folder
+    for (const auto& [name, says] : {std::pair("camera", ": Camera \"up\", and "),
+                                     {"samples", ": Settings \"32x24 pixels, 2 s"},
+                                     {"scene", ": Scene \""}}) {
+      const Outcome outcome = merge(name + ending);
+      CAPTURE(outcome.err);
+      CHECK(outcome.code == 2);
+      CHECK(LineCount(outcome.err) == 1);
+      CHECK(Contains(outcome.err, "sheaf: " + (work / (name + ending)) + says));
+    }
+  }
+  const Result<ReadPictureResult> merged = ReadPngFilm(work / "m.png");
+  REQUIRE(merged.ok());
+  REQUIRE(merged.value().metadata.size() == 3);
+  CHECK(merged.value().metadata[0] == std::pair<std::string, std::string>("Scene", kScene));
+  CHECK(merged.value().metadata[1].second == "front");
+
+  render("whole.png", {});
+  render("left.png", {"--crop", "0,0,9,24"});
+  render("a.pfm", {});
+  render("b.pfm", {"--crop", "0,0,9,24"});
+  const auto refused = [&](const std::string& first, const std::string& second) {
+    const Outcome outcome =
+        work.Run({"merge", work / first, work / second, "-o", work / ("x" + first)});
+    CHECK(outcome.code == 2);
+    return outcome.err;
+  };
+  CHECK(Contains(refused("whole.png", "left.png"), "left.png: pixel (0, 0) is in another part"));
+  CHECK(Contains(refused("a.pfm", "1.exr"), "a.pfm: does not say where it belongs, and "));
+  CHECK(Contains(refused("1.exr", "a.pfm"), "a.pfm: does not say where it belongs, and "));
+  CHECK(Contains(refused("a.pfm", "b.pfm"), "b.pfm: 9 pixels wide, and "));
+}
+
 TEST_CASE("layers lie beside a picture, or in it") {
   const Workspace work;
   const std::vector<std::string> layers = {"--aov", "depth,normal,albedo,id,heat", "-q", "--size",
@@ -507,7 +624,7 @@ TEST_CASE("convert keeps every bit that the format holds") {
   const Workspace work;
   REQUIRE(work.Run({"render", kScene, "-o", work / "a.exr", "-q", "--size", "40x30"}).code == 0);
   REQUIRE(work.Run({"render", kScene, "-o", work / "a.pfm", "-q", "--size", "40x30"}).code == 0);
-  REQUIRE(work.Run({"convert", work / "a.exr", "-o", work / "b.pfm"}).code == 0);
+  REQUIRE(work.Run({"convert", work / "a.exr", "--output", work / "b.pfm"}).code == 0);
   CHECK(ReadText(work / "a.pfm") == ReadText(work / "b.pfm"));
   REQUIRE(work.Run({"convert", work / "a.exr", "-o", work / "a.png", "--bits", "16"}).code == 0);
   CHECK(work.Run({"compare", work / "a.exr", work / "a.png", "--fail", "largest=0.00001"}).code ==

@@ -4,6 +4,18 @@
 
 namespace sheaf {
 
+CLI::Option* AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
+                     const char* description) {
+  const auto complain = [](const std::string& text) {
+    return std::string(text.empty() ? "the path is empty" : "");
+  };
+  return app.add_option(name, path, description)->option_text(placeholder)->check(complain);
+}
+
+void AddOutput(CLI::App& app, std::string& path, const char* placeholder, const char* description) {
+  AddPath(app, "-o,--output", path, placeholder, description)->required();
+}
+
 void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
                 const char* description) {
   const std::string expected = max == INT_MAX ? fmt::format("a whole number from {}", min)
@@ -28,10 +40,10 @@ void AddBits(CLI::App& app, std::optional<int>& bits) {
   AddInteger(app, "--bits", bits, 8, 32, "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
 }
 
-void AddPrecision(CLI::App& app, std::string& name) {
+CLI::Option* AddPrecision(CLI::App& app, std::string& name) {
   std::vector<std::string> names;
   for (const Precision precision : kPrecisions) names.push_back(PrecisionName(precision));
-  app.add_option("--precision", name, "Arithmetic")
+  return app.add_option("--precision", name, "Arithmetic")
       ->option_text(fmt::format("{}", fmt::join(names, "|")))
       ->check(CLI::IsMember(names));
 }

@@ -33,6 +33,13 @@ void AddParsed(CLI::App& app, const char* name, T& value, const char* placeholde
       ->option_text(placeholder);
 }
 
+// A path, which may not be empty: as an unset variable of a script is.
+CLI::Option* AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
+                     const char* description);
+
+// -o and --output, which are needed.
+void AddOutput(CLI::App& app, std::string& path, const char* placeholder, const char* description);
+
 // A whole number in [min, max]; INT_MAX is no limit.
 void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
                 const char* description);
@@ -48,7 +55,7 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size);
 void AddBits(CLI::App& app, std::optional<int>& bits);
 
 // --precision, a name that PrecisionOf takes.
-void AddPrecision(CLI::App& app, std::string& name);
+CLI::Option* AddPrecision(CLI::App& app, std::string& name);
 
 // --targets, a list that ExpandTargets takes.
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description);

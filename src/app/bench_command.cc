@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -41,31 +42,43 @@ struct Row {
   std::vector<double> phases[kPhases];  // the same; summed over threads
 };
 
-Status RenderOnce(const Scene& scene, const Camera& camera, RenderOptions options, Row& row,
-                  bool is_kept) {
-  if (const Status chosen = ChooseTarget(row.target, options); !chosen) return chosen;
+Result<RenderStats> RenderOnce(const Scene& scene, const Camera& camera, RenderOptions options,
+                               Row& row) {
+  if (const Status chosen = ChooseTarget(row.target, options); !chosen) return chosen.error();
   options.threads = row.threads;
   if (options.engine == Engine::kSimd) row.lanes = simd::RunningLanes();
   FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
   const RowSink drop = [](const Film&) { return Status(Done{}); };
   RenderStats stats;
   const Status rendered = RenderRows(scene, camera, options, drop, &stats, watch.progress());
-  if (!rendered || !is_kept) return rendered;
-  row.rays = stats.rays.traced();
-  row.seconds.push_back(stats.wall_seconds);
-  for (int i = 0; i < kPhases; ++i) row.phases[i].push_back(stats.phase_seconds[i]);
+  if (!rendered) return rendered.error();
+  // The watch wakes ten times a second; a frame may be shorter.
+  if (const Status going = CheckInterrupted(); !going) return going.error();
+  return stats;
+}
+
+// One frame of each row, which also tells its rays.
+Status WarmUp(const Scene& scene, const Camera& camera, const RenderOptions& options,
+              std::vector<Row>& rows) {
+  for (Row& row : rows) {
+    const Result<RenderStats> stats = RenderOnce(scene, camera, options, row);
+    if (!stats) return stats.error();
+    row.rays = stats.value().rays.traced();
+  }
   return Done{};
 }
 
 // Every repetition takes each row once, beginning with another one: a drift of the clock meets all
-// alike. The first round warms up.
+// alike.
 Status Measure(const Scene& scene, const Camera& camera, const RenderOptions& options,
                int repetitions, std::vector<Row>& rows) {
-  for (int repetition = -1; repetition < repetitions; ++repetition) {
+  for (int repetition = 0; repetition < repetitions; ++repetition) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       Row& row = rows[(i + static_cast<std::size_t>(repetition + 1)) % rows.size()];
-      const Status rendered = RenderOnce(scene, camera, options, row, repetition >= 0);
-      if (!rendered) return rendered;
+      const Result<RenderStats> stats = RenderOnce(scene, camera, options, row);
+      if (!stats) return stats.error();
+      row.seconds.push_back(stats.value().wall_seconds);
+      for (int k = 0; k < kPhases; ++k) row.phases[k].push_back(stats.value().phase_seconds[k]);
     }
   }
   return Done{};
@@ -100,7 +113,8 @@ Json RowJson(const Row& row, const Row* scalar) {
                {"rays_per_second",
                 {{"median", rate(Median(row.seconds))},
                  {"low", rate(interval.high)},
-                 {"high", rate(interval.low)}}},
+                 {"high", rate(interval.low)},
+                 {"interval", row.seconds.size() < kLeastForInterval ? "range" : "95 %"}}},
                {"seconds", row.seconds}};
   if (scalar != nullptr) {
     json["over_scalar"] = 1 / Median(InScalars(row.seconds, scalar->seconds));
@@ -113,10 +127,11 @@ Json RowJson(const Row& row, const Row* scalar) {
 }
 
 std::string RowsText(const Json& report) {
-  const bool judged = !report["rows"].empty() && report["rows"][0].contains("verdict");
-  std::string text =
-      fmt::format("{:12}{:>8}{:>6}{:>9}  {:17}{:>9}{}\n", "target", "threads", "lanes", "Mray/s",
-                  " 95 % interval", "x scalar", judged ? "  against the baseline" : "");
+  const bool judged = report["rows"][0].contains("verdict");
+  const bool is_range = report["rows"][0]["rays_per_second"]["interval"] == "range";
+  std::string text = fmt::format("{:12}{:>8}{:>6}{:>9}  {:17}{:>9}{}\n", "target", "threads",
+                                 "lanes", "Mray/s", is_range ? " range of all" : " 95 % interval",
+                                 "x scalar", judged ? "  against the baseline" : "");
   const auto out = std::back_inserter(text);
   for (const Json& row : report["rows"]) {
     const Json& rate = row["rays_per_second"];
@@ -169,13 +184,15 @@ Result<Json> ReadBaseline(const std::string& path) {
   for (const char* key : {"camera", "width", "height", "samples"}) {
     if (!json.contains(key)) return malformed("a key is missing");
   }
+  if (!json.contains("scene") || !json["scene"].is_string()) return malformed("no scene");
   if (!json.contains("rows") || !json["rows"].is_array()) return malformed("no rows");
   for (const Json& row : json["rows"]) {
     const bool sound = row.is_object() && row.contains("target") && row["target"].is_string() &&
                        row.contains("threads") && row["threads"].is_number_integer() &&
+                       row.contains("rays") && row["rays"].is_number_integer() &&
                        row.contains("seconds") && row["seconds"].is_array() &&
                        !row["seconds"].empty();
-    if (!sound) return malformed("a row without target, threads or seconds");
+    if (!sound) return malformed("a row without target, threads, rays or seconds");
     for (const Json& seconds : row["seconds"]) {
       if (!seconds.is_number() || !(seconds.get<double>() > 0)) return malformed("bad seconds");
     }
@@ -183,12 +200,30 @@ Result<Json> ReadBaseline(const std::string& path) {
   return json;
 }
 
+Error OtherFrame(const std::string& path, const char* what, const Json& before, const Json& now) {
+  return Usage(fmt::format("--baseline {}: its {} is {}, here it is {}", path, what, before.dump(),
+                           now.dump()));
+}
+
+// A scene may lie elsewhere by now, but goes by its name.
+std::string SceneName(const Json& report) {
+  return std::filesystem::path(report["scene"].get<std::string>()).filename().string();
+}
+
 Status CheckSameFrame(const std::string& path, const Json& now, const Json& before) {
+  if (SceneName(now) != SceneName(before)) {
+    return OtherFrame(path, "scene", SceneName(before), SceneName(now));
+  }
   for (const char* key : {"camera", "width", "height", "samples"}) {
-    if (now[key] != before[key]) {
-      return Usage(fmt::format("--baseline {}: its {} is {}, here it is {}", path, key,
-                               before[key].dump(), now[key].dump()));
-    }
+    if (now[key] != before[key]) return OtherFrame(path, key, before[key], now[key]);
+  }
+  return Done{};
+}
+
+// Another viewpoint or scene of the same name shows in what it traces, which no target changes.
+Status CheckSameRays(const std::string& path, std::uint64_t rays, const Json& before) {
+  for (const Json& row : before["rows"]) {
+    if (row["rays"] != rays) return OtherFrame(path, "number of rays", row["rays"], rays);
   }
   return Done{};
 }
@@ -253,9 +288,9 @@ CLI::App* AddBenchCommand(CLI::App& app, BenchRequest& request) {
   AddTargets(*bench, request.targets, "What renders; all: every usable one and scalar");
   AddThreads(*bench, request.threads);
   AddInteger(*bench, "--repetitions", request.repetitions, 1, 1000,
-             "Frames of each row, taken in turn; 9 if absent");
-  bench->add_option("--baseline", request.baseline, "A file that --json wrote, to judge against")
-      ->option_text("FILE");
+             "Frames of each row, taken in turn; 9 if absent, from 6 with a 95 % interval");
+  AddPath(*bench, "--baseline", request.baseline, "FILE",
+          "A file that --json wrote, to judge against");
   bench->add_flag("--absolute", request.absolute,
                   "Judge seconds, not ratios to the scalar baseline of the same run");
   AddJson(*bench, request.json, "The result as JSON to stdout, or into FILE");
@@ -271,21 +306,26 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
     if (const Status writable = CheckWritable(request.json); !writable) return writable.error();
   }
   std::vector<Row> rows;
-  const std::vector<std::string> targets = ExpandTargets(request.targets);
+  const Result<std::vector<std::string>> targets = ExpandTargets(request.targets);
+  if (!targets) return targets.error();
   for (const int threads : request.threads) {
-    for (const std::string& target : targets) {
-      if (const Status known = ChooseTarget(target); !known) return known.error();
+    for (const std::string& target : targets.value()) {
       rows.push_back({target, threads, 1, 0, {}, {}});
     }
   }
-  const Result<Scene> scene = OpenScene(request.scene, request.options);
-  if (!scene) return scene.error();
+  const Result<OpenedScene> opened = OpenSceneAndFiles(request.scene, request.options);
+  if (!opened) return opened.error();
+  const Scene& scene = opened.value().scene;
+  std::vector<std::string> inputs = opened.value().files;
+  inputs.push_back(request.baseline);
+  const Status apart = CheckOutputs({{"--json", request.json}}, inputs);
+  if (!apart) return apart.error();
   CameraChoice choice;
   if (!request.camera.empty()) choice.cameras = {request.camera};
-  const auto cameras = ChooseCameras(choice, request.scene, scene.value());
+  const auto cameras = ChooseCameras(choice, request.scene, scene);
   if (!cameras) return cameras.error();
   const Camera& camera = *cameras.value().front();
-  RenderOptions options = FrameOptions(scene.value().settings, request.size, request.samples);
+  RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);
   options.timing = Timing::kOn;
 
   Json report = {{"sheaf", kVersion},      {"scene", request.scene},   {"camera", camera.name},
@@ -296,8 +336,13 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
     if (!same) return same.error();
   }
   CatchInterrupts();
-  const Status measured =
-      Measure(scene.value(), camera, options, request.repetitions.value_or(9), rows);
+  const Status warm = WarmUp(scene, camera, options, rows);
+  if (!warm) return warm.error();
+  if (!request.baseline.empty()) {
+    const Status same = CheckSameRays(request.baseline, rows.front().rays, baseline.value());
+    if (!same) return same.error();
+  }
+  const Status measured = Measure(scene, camera, options, request.repetitions.value_or(9), rows);
   if (!measured) return measured.error();
   for (const Row& row : rows) {
     report["rows"].push_back(RowJson(row, ScalarRow(rows, row.threads)));

@@ -36,6 +36,18 @@ Error UnknownName(std::string_view option, std::string_view kind, const std::str
                            choices.empty() ? "none" : Printable(list)));
 }
 
+// Why `target` does not run, with `choices` of the option before the usable ones.
+Error UnusableTarget(std::string_view option, const std::string& target,
+                     std::vector<std::string> choices) {
+  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
+  const std::vector<std::string> compiled = simd::CompiledTargets();
+  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
+    return Usage(fmt::format("{}: this processor does not run \"{}\" (usable: {})", option, target,
+                             fmt::join(choices, ", ")));
+  }
+  return UnknownName(option, "target", target, "usable", choices);
+}
+
 }  // namespace
 
 Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
@@ -61,14 +73,7 @@ std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
 
 Status ChooseTarget(const std::string& target) {
   if (target == "scalar" || simd::ForceTarget(target)) return Done{};
-  std::vector<std::string> choices = {"auto", "scalar"};
-  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
-  const std::vector<std::string> compiled = simd::CompiledTargets();
-  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
-    return Usage(fmt::format("--target: this processor does not run \"{}\" (usable: {})", target,
-                             fmt::join(choices, ", ")));
-  }
-  return UnknownName("--target", "target", target, "usable", choices);
+  return UnusableTarget("--target", target, {"auto", "scalar"});
 }
 
 Status ChooseTarget(const std::string& target, RenderOptions& options) {
@@ -93,15 +98,24 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
   return options;
 }
 
-std::vector<std::string> ExpandTargets(const std::vector<std::string>& names) {
+Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names) {
+  const std::vector<std::string> usable = simd::UsableTargets();
+  std::vector<std::string> every = {"scalar"};
+  every.insert(every.end(), usable.begin(), usable.end());
   std::vector<std::string> targets;
   for (const std::string& name : names) {
-    const std::vector<std::string> usable = simd::UsableTargets();
-    if (name == "all") {
-      targets.push_back("scalar");
-      targets.insert(targets.end(), usable.begin(), usable.end());
-    } else {
-      targets.push_back(name == "auto" ? usable.front() : name);
+    const std::vector<std::string> meant = name == "all"    ? every
+                                           : name == "auto" ? std::vector{usable.front()}
+                                                            : std::vector{name};
+    for (const std::string& target : meant) {
+      if (std::find(every.begin(), every.end(), target) == every.end()) {
+        return UnusableTarget("--targets", target, {"all", "auto", "scalar"});
+      }
+      if (std::find(targets.begin(), targets.end(), target) != targets.end()) {
+        return Usage(fmt::format(
+            "--targets: \"{}\" is there twice, counting what all and auto mean", target));
+      }
+      targets.push_back(target);
     }
   }
   return targets;

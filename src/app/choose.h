@@ -35,8 +35,9 @@ Precision PrecisionOf(const std::string& name);
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
                            const std::optional<int>& samples);
 
-// Names of targets, where "all" stands for scalar and every usable one, "auto" for the best.
-std::vector<std::string> ExpandTargets(const std::vector<std::string>& names);
+// The targets that words of --targets name, where "all" stands for scalar and every usable one,
+// "auto" for the best. kUsage where one does not run here, or is there twice.
+Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names);
 
 // Which cameras of a scene to use.
 struct CameraChoice {

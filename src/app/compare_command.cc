@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -44,6 +45,7 @@ Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Came
   FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
   RenderStats stats;
   Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
+  if (const Status going = CheckInterrupted(); !going) return going.error();
   if (film && stats.target != renderer.target) {
     return Usage(
         fmt::format("--targets: {} was asked for and {} ran", renderer.target, stats.target));
@@ -51,11 +53,12 @@ Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Came
   return film;
 }
 
-std::vector<Renderer> ListRenderers(const CompareRequest& request) {
-  const std::vector<std::string> targets = ExpandTargets(request.targets);
+Result<std::vector<Renderer>> ListRenderers(const CompareRequest& request) {
+  const Result<std::vector<std::string>> targets = ExpandTargets(request.targets);
+  if (!targets) return targets.error();
   std::vector<Renderer> renderers;
   for (const int threads : request.threads) {
-    for (const std::string& target : targets) renderers.push_back({target, threads});
+    for (const std::string& target : targets.value()) renderers.push_back({target, threads});
   }
   return renderers;
 }
@@ -99,12 +102,17 @@ std::string DescribeDifference(const Scene& scene, const Camera& camera,
 }
 
 Result<ExitCode> CompareRenderings(const CompareRequest& request) {
-  const std::vector<Renderer> renderers = ListRenderers(request);
+  const Result<std::vector<Renderer>> listed = ListRenderers(request);
+  if (!listed) return listed.error();
+  const std::vector<Renderer>& renderers = listed.value();
   if (renderers.size() < 2) {
     return Usage("--targets, --threads: there is one rendering, and nothing to compare it with");
   }
-  for (const Renderer& renderer : renderers) {
-    if (const Status known = ChooseTarget(renderer.target); !known) return known.error();
+  const Precision precision = PrecisionOf(request.precision);
+  if (precision == Precision::kFast) {
+    return Usage(
+        "--precision fast: has other bits on every target by design (docs/numerics.md), so that "
+        "there is nothing to compare");
   }
   const std::string& path = request.inputs.front();
   const Result<Scene> read = OpenScene(path, request.options);
@@ -114,7 +122,7 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
   if (!cameras) return cameras.error();
 
   RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);
-  options.precision = PrecisionOf(request.precision);
+  options.precision = precision;
 
   CatchInterrupts();
   Json json = {{"scene", path}, {"reference", renderers.front().Name()}, {"runs", Json::array()}};
@@ -203,18 +211,34 @@ void ClampToDisplay(Film& film) {
   for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
 }
 
-// The first limit that is broken, or nothing.
-std::string BrokenLimit(const PictureMetrics& metrics,
-                        const std::vector<std::pair<std::string, double>>& limits) {
+bool IsFinite(const Film& film) {
+  return std::all_of(film.rgb.begin(), film.rgb.end(), [](float v) { return std::isfinite(v); });
+}
+
+struct Comparison {
+  PictureMetrics metrics;
+  bool is_finite;  // whether both pictures are
+};
+
+// Every limit that is broken. What is not finite is beyond any, also where both pictures have it.
+std::vector<std::string> BrokenLimits(const Comparison& comparison,
+                                      const std::vector<std::pair<std::string, double>>& limits) {
+  std::vector<std::string> broken;
+  if (!comparison.is_finite && !limits.empty()) {
+    broken.push_back("NaN or infinity breaks every limit");
+  }
   for (const auto& [name, limit] : limits) {
     const Metric* metric = FindMetric(name);
-    const double value = metric->value(metrics);
+    const double value = metric->value(comparison.metrics);
     if (metric->more_is_better ? !(value >= limit) : !(value <= limit)) {
-      return fmt::format("{} {:.6g} breaks the limit of {:g}", name, value, limit);
+      broken.push_back(fmt::format("{} {:.6g} breaks the limit of {:g}", name, value, limit));
     }
   }
-  return {};
+  return broken;
 }
+
+// To two digits; never -0.
+double Decibels(double psnr) { return std::round(100 * psnr) / 100 + 0.0; }
 
 Result<ExitCode> ComparePictures(const CompareRequest& request) {
   if (request.inputs.size() < 2) {
@@ -223,6 +247,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
   const Transfer transfer = request.transfer == "srgb" ? Transfer::kSrgb : Transfer::kLinear;
   const Result<Film> reference = ReadDisplayValues(request.inputs.front(), transfer);
   if (!reference) return reference.error();
+  const bool is_reference_finite = IsFinite(reference.value());
   std::optional<Film> shown_reference;  // clamped, where a picture asks for that
   Json json = {{"reference", request.inputs.front()}, {"pictures", Json::array()}};
   ExitCode code = ExitCode::kOk;
@@ -231,6 +256,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     const std::string& path = request.inputs[i];
     Result<Film> test = ReadDisplayValues(path, transfer);
     if (!test) return test.error();
+    const bool finite = is_reference_finite && IsFinite(test.value());
     const bool is_mixed = HoldsFloats(path) != HoldsFloats(request.inputs.front());
     if (is_mixed && !shown_reference) {
       shown_reference = reference.value();
@@ -244,10 +270,11 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
                                request.inputs.front(), a.width, a.height));
     }
     const PictureMetrics metrics = MeasurePictures(a, b, transfer);
-    const std::string broken = BrokenLimit(metrics, request.limits);
-    Json entry = {{"path", path}};
-    // JSON has no infinity: equal pictures have a null for their PSNR.
+    const std::vector<std::string> broken = BrokenLimits({metrics, finite}, request.limits);
+    Json entry = {{"path", path}, {"identical", metrics.largest == 0}, {"finite", finite}};
+    // JSON has no infinity: a metric that is not finite becomes null.
     for (const Metric& metric : kMetrics) entry[metric.name] = metric.value(metrics);
+    entry["over"] = metrics.over;
     if (!broken.empty()) {
       entry["broken"] = broken;
       code = ExitCode::kDifferent;
@@ -256,12 +283,29 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     text += fmt::format(
         "{}: rmse {:.6g}, psnr {:.2f} dB, largest error {:.6g}, {} pixels over 1/255, flip "
         "{:.6g}{}{}\n",
-        path, metrics.rmse, metrics.psnr, metrics.largest, metrics.over, metrics.mean_flip,
-        broken.empty() ? "" : "; ", broken);
+        path, metrics.rmse, Decibels(metrics.psnr), metrics.largest, metrics.over,
+        metrics.mean_flip, broken.empty() ? "" : "; ", fmt::join(broken, ", "));
   }
   const Status written = WriteStandardOutput(request.json ? JsonText(json) : text);
   if (!written) return written.error();
   return code;
+}
+
+// ---- The command line ----
+
+enum class Mode { kRenderings, kPictures };
+
+// An option that the other mode alone has would go unheard.
+Status CheckOptions(const CLI::App& command, Mode mode) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "INPUT" || name == "--json") continue;
+    const bool is_of_pictures = name == "--transfer" || name == "--fail";
+    if (is_of_pictures == (mode == Mode::kPictures)) continue;
+    return Usage(fmt::format("{}: only where {} compared", name,
+                             is_of_pictures ? "pictures are" : "a scene's renderings are"));
+  }
+  return Done{};
 }
 
 }  // namespace
@@ -269,6 +313,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
 CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
   CLI::App* compare = app.add_subcommand(
       "compare", "Compare targets and threads on a scene bit by bit, or pictures by metrics");
+  request.command = compare;
   compare->add_option("INPUT", request.inputs, "A scene; or pictures, the first the reference")
       ->required()
       ->option_text("...");
@@ -281,7 +326,7 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
   AddThreads(*compare, request.threads);
   AddInteger(*compare, "--max-ulp", request.max_ulp, 0, std::numeric_limits<int>::max(),
              "Units in the last place that a channel may differ by; 0 if absent");
-  AddPrecision(*compare, request.precision);
+  AddPrecision(*compare, request.precision)->option_text("strict|double");
   compare->add_option("--transfer", request.transfer, "How 8-bit pictures encode light")
       ->option_text("linear|srgb")
       ->check(CLI::IsMember({"linear", "srgb"}));
@@ -294,7 +339,9 @@ CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request) {
 }
 
 Result<ExitCode> RunCompare(const CompareRequest& request) {
-  if (CheckPicturePath(request.inputs.front())) return ComparePictures(request);
+  const Mode mode = CheckPicturePath(request.inputs.front()) ? Mode::kPictures : Mode::kRenderings;
+  if (const Status heard = CheckOptions(*request.command, mode); !heard) return heard.error();
+  if (mode == Mode::kPictures) return ComparePictures(request);
   if (request.inputs.size() > 1) {
     return Usage(fmt::format("{}: no .png, .pfm or .exr, and of scenes there can be only one",
                              request.inputs.front()));

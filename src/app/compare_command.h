@@ -20,6 +20,7 @@ namespace sheaf {
 
 // The command line as it was given.
 struct CompareRequest {
+  const CLI::App* command = nullptr;  // knows which options were given
   SceneOptions options;
   std::vector<std::string> inputs;  // one scene, or pictures of which the first is the reference
   // Of a scene:

@@ -135,9 +135,7 @@ CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request) {
   convert->add_option("INPUT", request.input, "A scene, a model or a picture")
       ->required()
       ->option_text(" ");
-  convert->add_option("-o", request.output, "The ending chooses the format")
-      ->required()
-      ->option_text("PATH");
+  AddOutput(*convert, request.output, "PATH", "The ending chooses the format (needed)");
   AddBits(*convert, request.bits);
   convert
       ->add_option("--transfer", request.transfer,

@@ -2,6 +2,8 @@
 #ifndef SHEAF_APP_INTERRUPT_H_
 #define SHEAF_APP_INTERRUPT_H_
 
+#include "src/core/error.h"
+
 namespace sheaf {
 
 // From here on the first SIGINT or SIGTERM only raises the flag; a second one kills at once. A
@@ -10,6 +12,13 @@ void CatchInterrupts();
 
 // The signal that came, or 0.
 int PendingSignal();
+
+// kInterrupted once it came.
+Status CheckInterrupted();
+
+// From here on SIGINT and SIGTERM end the process at once, with the exit code of the signal: for
+// work that leaves nothing half-done.
+void ExitOnInterrupts();
 
 }  // namespace sheaf
 

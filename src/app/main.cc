@@ -8,7 +8,9 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "src/app/bench_command.h"
@@ -93,6 +95,15 @@ std::string DescribeExtra(const CLI::App& app, const std::string& word) {
                      Printable(word), DidYouMean(word, {known.begin(), known.end()}));
 }
 
+// CLI11 would take "--json=" for "--json", and "--size= 9x9" for "--size 9x9".
+std::optional<std::string> FindEmptyValue(int argc, char** argv) {
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i];
+    if (word.starts_with("--") && word.find('=') + 1 == word.size()) return word;
+  }
+  return std::nullopt;
+}
+
 // CLI11 asks for help and version by exception, too.
 ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::CallForHelp*>(&error) != nullptr) {
@@ -146,6 +157,9 @@ ExitCode Main(int argc, char** argv) {
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::kUsage;
+  }
+  if (const auto word = FindEmptyValue(argc, argv)) {
+    return Report({ErrorKind::kUsage, fmt::format("{}: nothing follows the =", Printable(*word))});
   }
   try {
     app.parse(argc, argv);

@@ -4,12 +4,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
+#include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
+#include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
@@ -19,50 +23,112 @@ struct Part {
   ReadPictureResult picture;
 };
 
-// Gives parts that know no place the next rows: they lie one beneath the other.
+// Parts that know no place lie one beneath the other.
+Status StackParts(std::vector<Part>& parts) {
+  const Part& first = parts.front();
+  const int width = first.picture.film.width;
+  int height = 0;
+  for (Part& part : parts) {
+    const Film& film = part.picture.film;
+    if (film.width != width) {
+      return Usage(fmt::format("{}: {} pixels wide, and {} is {}; such parts are stacked",
+                               PrintablePath(*part.path), film.width, PrintablePath(*first.path),
+                               width));
+    }
+    part.picture.window = {0, height, width, height + film.height};
+    height += film.height;
+  }
+  for (Part& part : parts) {
+    part.picture.full_width = width;
+    part.picture.full_height = height;
+  }
+  return Done{};
+}
+
 Status PlaceParts(std::vector<Part>& parts) {
-  const bool are_placed = std::all_of(
-      parts.begin(), parts.end(), [](const Part& part) { return part.picture.window.width() > 0; });
-  if (!are_placed) {
-    int height = 0;
-    for (Part& part : parts) {
-      const Film& film = part.picture.film;
-      part.picture.window = {0, height, film.width, height + film.height};
-      height += film.height;
-    }
-    for (Part& part : parts) {
-      part.picture.full_width = parts.front().picture.film.width;
-      part.picture.full_height = height;
-    }
+  const auto is_placed = [](const Part& part) { return part.picture.window.width() > 0; };
+  const auto placed = std::find_if(parts.begin(), parts.end(), is_placed);
+  if (placed == parts.end()) return StackParts(parts);
+  const auto lost = std::find_if_not(parts.begin(), parts.end(), is_placed);
+  if (lost == parts.end()) return Done{};
+  return Usage(fmt::format("{}: does not say where it belongs, and {} does",
+                           PrintablePath(*lost->path), PrintablePath(*placed->path)));
+}
+
+const std::string* FindText(const ReadPictureResult& picture, std::string_view key) {
+  for (const auto& [name, text] : picture.metadata) {
+    if (name == key) return &text;
+  }
+  return nullptr;
+}
+
+// Whether two parts are of one picture, as far as they tell.
+Status CheckOrigin(const Part& part, const Part& first) {
+  for (const std::string_view key : kMetadataKeys) {
+    const std::string* const text = FindText(part.picture, key);
+    const std::string* const expected = FindText(first.picture, key);
+    if (text == nullptr || expected == nullptr || *text == *expected) continue;
+    // Each machine may keep the scene in a folder of its own.
+    using Path = std::filesystem::path;
+    if (key == "Scene" && Path(*text).filename() == Path(*expected).filename()) continue;
+    return Usage(fmt::format("{}: {} \"{}\", and {} has \"{}\": parts of different pictures",
+                             PrintablePath(*part.path), key, Printable(*text),
+                             PrintablePath(*first.path), Printable(*expected)));
+  }
+  return Done{};
+}
+
+Status CheckPart(const Part& part, const Part& first) {
+  const ReadPictureResult& picture = part.picture;
+  const ReadPictureResult& other = first.picture;
+  const std::string path = PrintablePath(*part.path), first_path = PrintablePath(*first.path);
+  if (const Status same = CheckOrigin(part, first); !same) return same;
+  if (picture.full_width != other.full_width || picture.full_height != other.full_height) {
+    return Usage(fmt::format("{}: a part of {}x{} pixels, and {} is one of {}x{}", path,
+                             picture.full_width, picture.full_height, first_path, other.full_width,
+                             other.full_height));
+  }
+  if (picture.bits != other.bits || picture.is_srgb != other.is_srgb ||
+      picture.is_display != other.is_display) {
+    return Usage(fmt::format("{}: encoded otherwise than {}", path, first_path));
+  }
+  if (picture.film.held_layers() != other.film.held_layers()) {
+    return Usage(fmt::format("{}: other layers than {} has", path, first_path));
+  }
+  const PixelRect& window = picture.window;
+  if (window.x0 < 0 || window.y0 < 0 || window.x1 > other.full_width ||
+      window.y1 > other.full_height || window.width() != picture.film.width ||
+      window.height() != picture.film.height) {
+    return Usage(fmt::format("{}: does not lie within {}x{} pixels", path, other.full_width,
+                             other.full_height));
+  }
+  return Done{};
+}
+
+Status CheckParts(const std::vector<Part>& parts) {
+  for (const Part& part : parts) {
+    if (const Status sound = CheckPart(part, parts.front()); !sound) return sound;
   }
   const ReadPictureResult& first = parts.front().picture;
-  for (const Part& part : parts) {
-    const ReadPictureResult& picture = part.picture;
-    if (picture.full_width != first.full_width || picture.full_height != first.full_height) {
-      return Usage(fmt::format("{}: a part of {}x{} pixels, and {} is one of {}x{}", *part.path,
-                               picture.full_width, picture.full_height, *parts.front().path,
-                               first.full_width, first.full_height));
-    }
-    if (picture.bits != first.bits || picture.is_srgb != first.is_srgb ||
-        picture.is_display != first.is_display) {
-      return Usage(fmt::format("{}: encoded otherwise than {}", *part.path, *parts.front().path));
-    }
-    if (picture.film.held_layers() != first.film.held_layers()) {
-      return Usage(fmt::format("{}: other layers than {} has", *part.path, *parts.front().path));
-    }
-    const PixelRect& window = picture.window;
-    if (window.x0 < 0 || window.y0 < 0 || window.x1 > first.full_width ||
-        window.y1 > first.full_height || window.width() != picture.film.width ||
-        window.height() != picture.film.height) {
-      return Usage(fmt::format("{}: does not lie within {}x{} pixels", *part.path, first.full_width,
-                               first.full_height));
-    }
-  }
   if (first.full_width > kMaxImageSide || first.full_height > kMaxImageSide) {
     return Usage(fmt::format("the whole would have {}x{} pixels; sides may be 1 to {}",
                              first.full_width, first.full_height, kMaxImageSide));
   }
   return Done{};
+}
+
+// Of each kind the first that a part has.
+PictureMetadata MetadataOf(const std::vector<Part>& parts) {
+  PictureMetadata metadata;
+  for (const char* key : kMetadataKeys) {
+    for (const Part& part : parts) {
+      const std::string* const text = FindText(part.picture, key);
+      if (text == nullptr) continue;
+      metadata.emplace_back(key, *text);
+      break;
+    }
+  }
+  return metadata;
 }
 
 // Copies every part to its place; each pixel has to come from one of them.
@@ -103,9 +169,7 @@ CLI::App* AddMergeCommand(CLI::App& app, MergeRequest& request) {
   merge->add_option("PART", request.parts, "Pictures that hold every pixel once")
       ->required()
       ->option_text("...");
-  merge->add_option("-o", request.output, "The whole, of the same format as the parts")
-      ->required()
-      ->option_text("PATH");
+  AddOutput(*merge, request.output, "PATH", "The whole, of the same format as the parts (needed)");
   return merge;
 }
 
@@ -121,6 +185,7 @@ Status RunMerge(const MergeRequest& request) {
     parts.push_back({&path, std::move(picture).value()});
   }
   if (const Status placed = PlaceParts(parts); !placed) return placed;
+  if (const Status sound = CheckParts(parts); !sound) return sound;
   const ReadPictureResult& first = parts.front().picture;
   if (first.is_display == HoldsFloats(request.output)) {
     return Usage(fmt::format("-o {}: the parts hold {}; sheaf convert changes that", request.output,
@@ -132,6 +197,7 @@ Status RunMerge(const MergeRequest& request) {
   PictureSpec spec =
       WholePicture(whole.width, whole.height, first.is_srgb ? Transfer::kSrgb : Transfer::kLinear);
   spec.values = first.is_display ? Values::kEncoded : Values::kLight;
+  spec.metadata = MetadataOf(parts);
   if (HoldsLayers(request.output)) spec.layers = layers;
   if (CheckPictureBits(request.output, first.bits)) spec.bits = first.bits;
   return WritePicture(whole, spec, request.output);

@@ -263,11 +263,8 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   render->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
   AddSceneOptions(*render, request.options);
   AddCameraChoice(*render, request.choice);
-  render
-      ->add_option("-o,--output", request.output,
-                   "The picture, .png or .pfm (needed); {camera} becomes the camera's name")
-      ->required()
-      ->option_text("PATH");
+  AddOutput(*render, request.output, "PATH",
+            "The picture, .png, .pfm or .exr (needed); {camera} becomes the camera's name");
   AddSize(*render, request.size);
   AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddInteger(*render, "--max-depth", request.max_depth, 0, kMaxDepth,

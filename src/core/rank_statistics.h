@@ -2,6 +2,7 @@
 #ifndef SHEAF_CORE_RANK_STATISTICS_H_
 #define SHEAF_CORE_RANK_STATISTICS_H_
 
+#include <cstddef>
 #include <vector>
 
 namespace sheaf {
@@ -13,9 +14,12 @@ struct Interval {
   double low, high;
 };
 
+// Fewer values reach no confidence of 95 %.
+inline constexpr std::size_t kLeastForInterval = 6;
+
 // Holds the median of the distribution with at least 95 % confidence: between the k-th smallest and
-// the k-th largest value, for the largest k whose binomial tails allow it. Fewer than 6 values
-// reach no 95 %: then all of them lie within. Not empty.
+// the k-th largest value, for the largest k whose binomial tails allow it. Of fewer values than
+// kLeastForInterval all lie within. Not empty.
 Interval MedianInterval(std::vector<double> values);
 
 // The distance of the quartiles over the median; 0 for fewer than 4 values.

@@ -285,6 +285,11 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
       std::fill_n(&result.film.rgb[3 * i], 3, grey[i]);
     }
     result.bits = header.channels().findChannel(names[0])->type == Imf::HALF ? 16 : 32;
+    for (const char* key : kMetadataKeys) {
+      const auto* text =
+          header.findTypedAttribute<Imf::StringAttribute>(std::string("sheaf:") + key);
+      if (text != nullptr) result.metadata.emplace_back(key, text->value());
+    }
     const bool is_part = full_width <= kMaxImageSide && full_height <= kMaxImageSide &&
                          full_width >= 1 && full_height >= 1;
     if (is_part) {

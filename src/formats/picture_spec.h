@@ -13,6 +13,10 @@ namespace sheaf {
 
 using PictureMetadata = std::vector<std::pair<std::string, std::string>>;  // UTF-8
 
+// What a picture says of its origin: text chunks of a .png, attributes of an .exr. Of what readers
+// find they keep these.
+inline constexpr const char* kMetadataKeys[] = {"Scene", "Camera", "Settings"};
+
 // What the values of a film are that is written: light, or what a .png holds already.
 enum class Values { kLight, kEncoded };
 
@@ -45,9 +49,10 @@ struct ReadPictureResult {
   bool is_display = false;  // whether the values are encoded for a display: those of a .png
   int bits = 32;
   bool is_srgb = false;  // whether a .png says that its encoding is sRGB
-  // Where the file says which part of a picture it is; else an empty window.
+  // Which part of a picture it is; an empty window where the format cannot say it (.pfm).
   PixelRect window;
   int full_width = 0, full_height = 0;
+  PictureMetadata metadata;
 };
 
 }  // namespace sheaf

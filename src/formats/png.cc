@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <csetjmp>
@@ -76,6 +77,9 @@ class PngReader {
       if (std::strcmp(texts[i].key, kSizeKey) == 0) {
         std::sscanf(texts[i].text, "%dx%d", &full_width, &full_height);
       }
+      for (const char* key : kMetadataKeys) {
+        if (std::strcmp(texts[i].key, key) == 0) metadata.emplace_back(key, texts[i].text);
+      }
     }
     png_set_strip_alpha(png_);
     png_set_gray_to_rgb(png_);
@@ -99,6 +103,7 @@ class PngReader {
   bool is_srgb = false;
   int offset_x = 0, offset_y = 0, full_width = 0, full_height = 0;
   std::size_t row_bytes = 0;
+  PictureMetadata metadata;
 
  private:
   png_structp png_;
@@ -287,12 +292,14 @@ Result<ReadPictureResult> ReadPngFilm(const std::string& path) {
   result.is_display = true;
   result.bits = reader.bits;
   result.is_srgb = reader.is_srgb;
-  if (reader.full_width > 0 && reader.full_height > 0) {
-    result.window = {reader.offset_x, reader.offset_y, reader.offset_x + reader.width,
-                     reader.offset_y + reader.height};
-    result.full_width = reader.full_width;
-    result.full_height = reader.full_height;
-  }
+  result.metadata = reader.metadata;
+  const bool is_part = reader.full_width > 0 && reader.full_height > 0;
+  // Whatever a file says, the sums below do not overflow.
+  const int x0 = is_part ? std::clamp(reader.offset_x, -1, kMaxImageSide) : 0;
+  const int y0 = is_part ? std::clamp(reader.offset_y, -1, kMaxImageSide) : 0;
+  result.window = {x0, y0, x0 + reader.width, y0 + reader.height};
+  result.full_width = is_part ? reader.full_width : reader.width;
+  result.full_height = is_part ? reader.full_height : reader.height;
   return result;
 }
 
