@@ -300,32 +300,39 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
 TEST_CASE("pareto charts time against error") {
   const Workspace work;
   const Outcome outcome =
-      work.Run({"pareto", kScene, "--size", "24x18", "--reference-spp", "32", "--repetitions", "1",
+      work.Run({"pareto", kScene, "--size", "24x18", "--reference-spp", "65", "--repetitions", "1",
                 "--error", "0.05", "--time", "1e9", "-o", work / "report"});
   REQUIRE(outcome.code == 0);
   CHECK(Contains(outcome.out, "cheapest for error 0.05: "));
   const json report = json::parse(ReadText(work / "report/front.json"));
-  CHECK(report["reference_samples"] == 32);
-  double least = 1, best_on_front = 1, converged = 1;
+  CHECK(report["reference_samples"] == 65);
+  double least = 1, best_on_front = 1;
   int on_front = 0;
   for (const json& point : report["points"]) {
-    const double error = point["error"], numeric = point["numeric"], sampling = point["sampling"];
-    least = std::min(least, error);
+    const double error = point["error"], sampling = point["sampling"];
     if (point["front"]) {
       ++on_front;
       best_on_front = std::min(best_on_front, error);
     }
-    if (point["renderer"] == "POV-Ray") continue;
+    if (point["renderer"] == "POV-Ray") {
+      CHECK(point["numeric"].is_null());
+      // So small a frame takes a few of the milliseconds that it tells.
+      const bool is_timed = point["seconds"].is_number();
+      if (is_timed) CHECK(point["seconds"].get<double>() >= 0.01);
+      if (!is_timed) CHECK(point["front"] == false);
+      continue;
+    }
+    least = std::min(least, error);
+    const double numeric = point["numeric"];
     CHECK(point["seconds"].get<double>() > 0);
     // The two parts of an error bound it.
     CHECK(error <= numeric + sampling + 1e-12);
-    if (point["setting"] == "double, 32 spp, depth 5") converged = error;
+    CHECK(error > 0);  // no setting has the reference's own samples
     if (point["setting"] == "strict, 1 spp, depth 5") CHECK(error > 0.01);
   }
   CHECK(report["points"].size() > 200);
   CHECK(on_front >= 2);
-  CHECK(best_on_front == least);
-  CHECK(converged == 0);  // the reference's own samples
+  CHECK(best_on_front <= least);
   const std::string csv = ReadText(work / "report/front.csv");
   CHECK(LineCount(csv) == report["points"].size() + 1);
   if (HasProgram("gnuplot")) {
@@ -333,6 +340,10 @@ TEST_CASE("pareto charts time against error") {
     CHECK(fs::exists(work / "report/front.png"));
   }
   CHECK(work.Run({"pareto", kScene, "-o", "/proc/none"}).code == 4);
+  WriteText(work / "a.png", "no folder");
+  const Outcome file = work.Run({"pareto", kScene, "-o", work / "a.png"});
+  CHECK(file.code == 4);
+  CHECK(Contains(file.err, (work / "a.png") + ": no folder can be made there"));
   CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--error", "-1"}).code == 2);
 }
 

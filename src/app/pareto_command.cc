@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -26,6 +27,9 @@ namespace sheaf {
 namespace {
 
 constexpr int kSamples[] = {1, 2, 4, 8, 16, 32, 64};
+constexpr int kMostSamples = *std::rbegin(kSamples);
+// POV-Ray tells whole milliseconds: of less than this they are no measurement.
+constexpr double kLeastPovRaySeconds = 0.01;
 constexpr double kContrasts[] = {0.02, 0.05, 0.1};
 constexpr double kWeights[] = {0, 0.01, 0.05};
 
@@ -100,6 +104,8 @@ Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Settin
   RenderStats stats;
   Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
   if (!film) return film.error();
+  // The watch wakes ten times a second; a frame may be shorter.
+  if (const Status going = CheckInterrupted(); !going) return going.error();
   return Timed{Shown(std::move(film).value()), stats.wall_seconds};
 }
 
@@ -130,6 +136,7 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
 }
 
 // POV-Ray's own antialiasing, where it is installed and knows the projection.
+constexpr char kPovRay[] = "POV-Ray";
 constexpr const char* kPovRaySettings[] = {"-A",        "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4",
                                            "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"};
 
@@ -139,14 +146,26 @@ Result<std::vector<ParetoPoint>> MeasurePovRay(const Scene& scene, const Camera&
   std::vector<ParetoPoint> points;
   if (!HasPovRay() || !std::holds_alternative<Perspective>(camera.projection)) return points;
   for (const char* antialiasing : kPovRaySettings) {
-    if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
     const Result<PovRender> render =
         RenderWithPovRay(scene, camera, base.width, base.height, antialiasing, PovPicture::kRead);
+    // A terminal's Ctrl-C stops POV-Ray too, which then fails.
+    if (const Status going = CheckInterrupted(); !going) return going.error();
     if (!render) return render.error();
     const double error = RootMeanSquare(converged, render.value().film);
-    points.push_back({"POV-Ray", "", antialiasing, render.value().seconds, error, 0, error, false});
+    points.push_back({kPovRay, "", antialiasing, render.value().seconds, error, {}, error, false});
   }
   return points;
+}
+
+// Returns how many times were no measurement.
+int DropCoarseTimes(std::vector<ParetoPoint>& points) {
+  int dropped = 0;
+  for (ParetoPoint& point : points) {
+    if (point.renderer != kPovRay || *point.seconds >= kLeastPovRaySeconds) continue;
+    point.seconds.reset();
+    ++dropped;
+  }
+  return dropped;
 }
 
 void Say(const ParetoRequest& request, const std::string& line) {
@@ -187,7 +206,7 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
         const Result<ParetoPoint> point = MeasureSetting(scene, camera, setting, film);
         if (!point) return point.error();
         points.push_back(point.value());
-        add_time(point.value().seconds);
+        add_time(*point.value().seconds);
       } else {
         const Result<Timed> timed = RenderTimed(scene, camera, setting);
         if (!timed) return timed.error();
@@ -206,10 +225,16 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
     }
     for (const ParetoPoint& point : peer.value()) {
       if (round == 0) points.push_back(point);
-      add_time(point.seconds);
+      add_time(*point.seconds);
     }
   }
   for (std::size_t i = 0; i < points.size(); ++i) points[i].seconds = Median(seconds[i]);
+  const int untimed = DropCoarseTimes(points);
+  if (untimed > 0) {
+    Say(request, fmt::format("{}: {} settings of POV-Ray took less than {:g} ms, which it tells in "
+                             "whole ones: no times, and not on the front",
+                             name, untimed, 1e3 * kLeastPovRaySeconds));
+  }
   MarkFront(points);
   return points;
 }
@@ -242,12 +267,15 @@ CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
   pareto->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
   AddSceneOptions(*pareto, request.options);
   AddCameraChoice(*pareto, request.choice);
-  pareto->add_option("-o,--output", request.output, "The folder for the report (needed)")
-      ->required()
-      ->option_text("FOLDER");
+  AddOutput(*pareto, request.output, "FOLDER", "The folder for the report (needed)");
   AddSize(*pareto, request.size);
-  AddInteger(*pareto, "--reference-spp", request.reference_samples, 1, kMaxSamples,
-             "Samples a pixel of the converged picture, in double; 256 if absent");
+  // With as many samples as a setting has, the setting would have no error.
+  AddParsed(
+      *pareto, "--reference-spp", request.reference_samples, "N",
+      fmt::format("a whole number above the {} samples of a setting, up to {}", kMostSamples,
+                  kMaxSamples),
+      "Samples a pixel of the converged picture, in double, above 64; 256 if absent",
+      [](const std::string& text) { return ParseInteger(text, kMostSamples + 1, kMaxSamples); });
   AddInteger(*pareto, "--repetitions", request.repetitions, 1, 1000,
              "Frames of each setting, of which the median counts; 3 if absent");
   AddInteger(*pareto, "--threads", request.threads, 0, kMaxThreads, "Threads; 1 if absent");
@@ -268,6 +296,10 @@ Status RunPareto(const ParetoRequest& request) {
   if (!cameras) return cameras.error();
   std::error_code error;
   std::filesystem::create_directories(request.output, error);
+  if (error) {
+    return Error{ErrorKind::kInputOutput, fmt::format("{}: no folder can be made there: {}",
+                                                      request.output, error.message())};
+  }
   const Status writable = CheckWritable(request.output + "/report.json");
   if (!writable) return writable;
 

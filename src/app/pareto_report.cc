@@ -19,13 +19,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Without a value the field of a table is empty, and null in JSON.
+std::string Field(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : "";
+}
+
+Json JsonValue(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
 std::string CsvText(const std::vector<ParetoPoint>& points) {
   std::string text = "renderer,precision,setting,seconds,error,numeric,sampling,front\n";
   const auto out = std::back_inserter(text);
   for (const ParetoPoint& point : points) {
     fmt::format_to(out, "{},{},\"{}\",{},{},{},{},{}\n", point.renderer, point.precision,
-                   point.setting, point.seconds, point.error, point.numeric, point.sampling,
-                   point.is_on_front ? 1 : 0);
+                   point.setting, Field(point.seconds), point.error, Field(point.numeric),
+                   point.sampling, point.is_on_front ? 1 : 0);
   }
   return text;
 }
@@ -40,9 +47,9 @@ std::string ReportJson(const ParetoTitle& title, const std::vector<ParetoPoint>&
     json["points"].push_back({{"renderer", point.renderer},
                               {"precision", point.precision},
                               {"setting", point.setting},
-                              {"seconds", point.seconds},
+                              {"seconds", JsonValue(point.seconds)},
                               {"error", point.error},
-                              {"numeric", point.numeric},
+                              {"numeric", JsonValue(point.numeric)},
                               {"sampling", point.sampling},
                               {"front", point.is_on_front}});
   }
@@ -68,14 +75,16 @@ std::string Series(const ParetoPoint& point) {
 std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>& points,
                         const std::string& stem) {
   std::set<std::string> series;
-  for (const ParetoPoint& point : points) series.insert(Series(point));
+  for (const ParetoPoint& point : points) {
+    if (point.seconds) series.insert(Series(point));
+  }
   std::string text;
   const auto out = std::back_inserter(text);
   const auto block = [&](const std::string& name, auto keep) {
     fmt::format_to(out, "${} << END\n", name);
     std::vector<std::pair<double, double>> rows;
     for (const ParetoPoint& point : points) {
-      if (keep(point)) rows.emplace_back(1e3 * point.seconds, point.error);
+      if (point.seconds && keep(point)) rows.emplace_back(1e3 * *point.seconds, point.error);
     }
     std::sort(rows.begin(), rows.end());
     for (const auto& [milliseconds, error] : rows) {
@@ -131,16 +140,19 @@ bool DrawChart(const std::string& script, const std::string& stem) {
 void MarkFront(std::vector<ParetoPoint>& points) {
   for (ParetoPoint& point : points) {
     point.is_on_front = std::none_of(points.begin(), points.end(), [&](const ParetoPoint& other) {
-      const bool as_good = other.seconds <= point.seconds && other.error <= point.error;
+      const bool as_good =
+          other.seconds && other.seconds <= point.seconds && other.error <= point.error;
       return as_good && (other.seconds < point.seconds || other.error < point.error);
     });
+    point.is_on_front = point.is_on_front && point.seconds;
   }
 }
 
 const ParetoPoint* CheapestFor(const std::vector<ParetoPoint>& points, double error) {
   const ParetoPoint* best = nullptr;
   for (const ParetoPoint& point : points) {
-    if (point.error <= error && (!best || point.seconds < best->seconds)) best = &point;
+    if (!point.seconds || point.error > error) continue;
+    if (!best || point.seconds < best->seconds) best = &point;
   }
   return best;
 }
@@ -148,15 +160,16 @@ const ParetoPoint* CheapestFor(const std::vector<ParetoPoint>& points, double er
 const ParetoPoint* BestFor(const std::vector<ParetoPoint>& points, double seconds) {
   const ParetoPoint* best = nullptr;
   for (const ParetoPoint& point : points) {
-    if (point.seconds <= seconds && (!best || point.error < best->error)) best = &point;
+    if (!point.seconds || *point.seconds > seconds) continue;
+    if (!best || point.error < best->error) best = &point;
   }
   return best;
 }
 
 std::string PointText(const ParetoPoint& point) {
-  return fmt::format("{:10} {:48} {:>9.2f} ms  error {:.3g}, numeric {:.2g}, sampling {:.3g}\n",
-                     point.renderer, point.setting, 1e3 * point.seconds, point.error, point.numeric,
-                     point.sampling);
+  return fmt::format("{:10} {:48} {:>9.2f} ms  error {:.3g}, numeric {}, sampling {:.3g}\n",
+                     point.renderer, point.setting, 1e3 * point.seconds.value_or(0), point.error,
+                     point.numeric ? fmt::format("{:.2g}", *point.numeric) : "-", point.sampling);
 }
 
 Result<std::vector<std::string>> WriteParetoReport(const ParetoTitle& title,

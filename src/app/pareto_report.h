@@ -2,6 +2,7 @@
 #ifndef SHEAF_APP_PARETO_REPORT_H_
 #define SHEAF_APP_PARETO_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,21 +17,23 @@ struct ParetoPoint {
   std::string renderer;   // a target, or "POV-Ray"
   std::string precision;  // "strict", "fast" or "double"; empty for a peer
   std::string setting;    // e.g. "strict, 4 spp, adaptive 0.05"
-  double seconds = 0;     // median of one frame
-  double error = 0;       // against the converged picture
-  double numeric = 0;     // against the same samples in double; 0 for a peer, whose are unknown
-  double sampling = 0;    // of the same samples in double against the converged picture
+  // Median of one frame; none where the peer's clock is too coarse for it.
+  std::optional<double> seconds;
+  double error = 0;  // against the converged picture
+  // Against the same samples in double; none for a peer, whose are unknown.
+  std::optional<double> numeric;
+  double sampling = 0;  // of the same samples in double against the converged picture
   bool is_on_front = false;
 };
 
-// Marks the points that no other beats in time without losing in error.
+// Marks the points that no other beats in time without losing in error, of those with a time.
 void MarkFront(std::vector<ParetoPoint>& points);
 
 // The cheapest point of an error up to `error`, the best that takes up to `seconds`; null if none.
 const ParetoPoint* CheapestFor(const std::vector<ParetoPoint>& points, double error);
 const ParetoPoint* BestFor(const std::vector<ParetoPoint>& points, double seconds);
 
-// One line a point: renderer, setting, milliseconds, errors.
+// One line a point that has a time: renderer, setting, milliseconds, errors.
 std::string PointText(const ParetoPoint& point);
 
 // What the points have in common.
