@@ -92,6 +92,19 @@ class Process {
   }
 
   void Signal(int number) const { kill(process_, number); }
+
+  // Until the command has a handler for it, which the kernel tells; or a while, where it does not.
+  void WaitUntilCaught(int number) const {
+    const std::string path = "/proc/" + std::to_string(process_) + "/status";
+    for (int i = 0; i < 1000; ++i) {
+      const std::string status = ReadText(path);
+      const std::size_t at = status.find("SigCgt:");
+      if (at == std::string::npos) break;
+      if (std::stoull(status.substr(at + 7), nullptr, 16) >> (number - 1) & 1) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
   std::string err() const { return ReadText(err_path_); }
 
   int WaitForExit() const {
@@ -361,7 +374,7 @@ TEST_CASE("stress runs every case, and one ray again") {
   CHECK(replayed.code == 0);
   CHECK(Contains(replayed.out, "primitive 0, t 0x1p+1"));
   CHECK(Contains(work.Run({"stress", "on-spere"}).err, "did you mean \"on-sphere\"?"));
-  CHECK(work.Run({"stress", "on-sphere", "--replay", "1,2,3"}).code == 2);
+  CHECK(Contains(work.Run({"stress", "--help"}).out, "ox,oy,oz,dx,dy,dz,t_min,t_max,source"));
   CHECK(work.Run({"stress", "--replay", "0,0,3,0,0,-1,0,1,0"}).code == 2);
 }
 
@@ -702,6 +715,23 @@ TEST_CASE("usage errors: one line on stderr, code 2, no file") {
       {{"render", kScene, "-o", work / "{camera}.png", "--views", "seven", "--camera", "up"},
        "--views"},
       {{"info", kScene, "extra"}, "extra"},
+      {{"render", kScene, "-o", ""}, "--output: the path is empty"},
+      {{"render", kScene, "-o", png, "--json="}, "--json=: nothing follows"},
+      {{"bench", kScene, "--baseline", ""}, "--baseline: the path is empty"},
+      {{"bench", kScene, "--json="}, "--json=: nothing follows"},
+      {{"bench", kScene, "--targets", "foo"},
+       "--targets: unknown target \"foo\" (usable: all, auto"},
+      {{"bench", kScene, "--targets", "auto,all"}, "is there twice"},
+      {{"compare", png, png, "--camera", "up"}, "--camera: only where a scene's renderings are"},
+      {{"compare", png, png, "--max-ulp", "1"}, "--max-ulp"},
+      {{"compare", png, png, "--fov", "30"}, "--fov"},
+      {{"compare", kScene, "--fail", "rmse=1"}, "--fail: only where pictures are compared"},
+      {{"compare", kScene, "--precision", "fast"}, "by design"},
+      {{"pareto", kScene, "-o", ""}, "--output: the path is empty"},
+      {{"pareto", kScene, "-o", work / "r", "--reference-spp", "64"}, "above the 64 samples"},
+      {{"stress", "on-sphere", "--replay", ""}, "ox,oy,oz"},
+      {{"stress", "on-sphere", "--replay", "1,2,3"}, "ox,oy,oz"},
+      {{"stress", "clear-glass", "--replay", "0,0,3,0,0,-1,0,1,0"}, "traces no single rays"},
   };
   for (const auto& wrong : cases) {
     const Outcome outcome = work.Run(wrong.arguments);
@@ -1014,6 +1044,44 @@ TEST_CASE("a signal stops the frame: 130 or 143, no new file, the old one untouc
     CHECK(work.Files() == std::vector<std::string>{"up.png"});
     CHECK(ReadText(work / "up.png") == "the old picture");
   }
+}
+
+TEST_CASE("a signal stops what consists of many short frames or checks") {
+  const Workspace work;
+  // POV-Ray has no part in an orthographic camera.
+  const std::string scene = work / "ball.json";
+  WriteText(scene, R"({"materials": [{"name": "m"}],
+                       "objects": [{"sphere": {"center": [0, 0, 0], "radius": 1}, "material": "m"}],
+                       "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0],
+                                    "orthographic": {"height": 3}}]})");
+  std::string threads = "1";
+  for (int i = 2; i <= 1000; ++i) threads += "," + std::to_string(i);
+  const struct {
+    std::vector<std::string> arguments;
+    int signal, code;
+  } runs[] = {
+      {{"bench", scene, "--size", "8x8", "--repetitions", "1000", "--threads", threads,
+        "--json=" + (work / "b.json")},
+       SIGINT,
+       130},
+      {{"compare", scene, "--size", "8x8", "--threads", threads}, SIGTERM, 143},
+      {{"pareto", scene, "--size", "8x8", "--repetitions", "1000", "-o", work / "r"}, SIGINT, 130},
+      {{"stress", "far-leaks", "--thorough"}, SIGINT, 130},
+      {{"stress", "far-leaks", "--thorough"}, SIGTERM, 143}};
+  for (const auto& run : runs) {
+    const Process process = work.Start(run.arguments);
+    process.WaitUntilCaught(run.signal);
+    process.Signal(run.signal);
+    const Outcome outcome = process.Wait();
+    CAPTURE(run.arguments.front());
+    CHECK(outcome.code == run.code);
+    CHECK(!Contains(outcome.out, "x scalar"));
+    CHECK(!Contains(outcome.out, "differ from"));
+    CHECK(!Contains(outcome.out, "cases failed"));
+    CHECK(Contains(outcome.err, "interrupted"));
+  }
+  CHECK(!fs::exists(work / "b.json"));
+  CHECK(fs::is_empty(work / "r"));
 }
 
 TEST_CASE("output that does not arrive is code 4") {

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/interrupt.h"
 #include "src/app/standard_output.h"
@@ -14,6 +15,8 @@
 
 namespace sheaf {
 namespace {
+
+constexpr char kRayFormat[] = "ox,oy,oz,dx,dy,dz,t_min,t_max,source";
 
 std::vector<stress::Case> AllCases() {
   std::vector<stress::Case> cases(stress::RayCases().begin(), stress::RayCases().end());
@@ -39,17 +42,31 @@ Result<std::vector<stress::Case>> ChooseCases(const std::vector<std::string>& na
   return chosen;
 }
 
+// A ray needs the one case that traces it.
+Status CheckReplay(const StressRequest& request) {
+  if (!request.replay) return Done{};
+  if (request.cases.size() != 1) return Usage("--replay: it takes the one case that is named");
+  const std::span<const stress::Case> pictures = stress::PictureCases();
+  const bool renders = std::any_of(pictures.begin(), pictures.end(), [&](const stress::Case& c) {
+    return request.cases.front() == c.name;
+  });
+  if (!renders) return Done{};
+  return Usage(fmt::format("--replay: the case \"{}\" renders pictures and traces no single rays",
+                           request.cases.front()));
+}
+
 }  // namespace
 
 CLI::App* AddStressCommand(CLI::App& app, StressRequest& request) {
   CLI::App* stress = app.add_subcommand("stress", "Run the stress cases of the numerics");
   stress->add_option("CASE", request.cases, "The cases; all if absent")->option_text("...");
   stress->add_flag("--list", request.list, "The cases and what is expected of each");
-  stress->add_flag("--thorough", request.thorough, "More and larger: minutes to hours");
-  stress
-      ->add_option("--replay", request.replay,
-                   "A ray as a failure prints it, traced in the one case that is named")
-      ->option_text("RAY");
+  stress->add_flag("--thorough", request.thorough,
+                   "More and larger: most cases take minutes, all up to hours");
+  AddParsed(
+      *stress, "--replay", request.replay, "RAY", fmt::format("a ray {}", kRayFormat),
+      fmt::format("Trace {}, as a failure prints it, in the one case named", kRayFormat).c_str(),
+      &stress::ParseRay);
   return stress;
 }
 
@@ -65,18 +82,12 @@ Result<ExitCode> RunStress(const StressRequest& request) {
     if (!written) return written.error();
     return ExitCode::kOk;
   }
-  std::optional<stress::Ray> replay;
-  if (!request.replay.empty()) {
-    replay = stress::ParseRay(request.replay);
-    if (!replay) return Usage(fmt::format("--replay: \"{}\" is no ray", Printable(request.replay)));
-    if (request.cases.size() != 1) return Usage("--replay: it takes the one case that is named");
-  }
-  CatchInterrupts();
+  if (const Status sound = CheckReplay(request); !sound) return sound.error();
+  ExitOnInterrupts();
   std::size_t failed = 0;
   for (const stress::Case& c : cases.value()) {
-    if (PendingSignal() != 0) return Error{ErrorKind::kInterrupted, "interrupted"};
     stress::Report report(request.thorough ? stress::Effort::kThorough : stress::Effort::kUsual,
-                          replay);
+                          request.replay);
     c.run(report);
     // A case that checks nothing has shown nothing.
     const bool passed = report.failures() == 0 && report.checks() > 0;

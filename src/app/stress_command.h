@@ -2,11 +2,13 @@
 #ifndef SHEAF_APP_STRESS_COMMAND_H_
 #define SHEAF_APP_STRESS_COMMAND_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "src/app/exit_code.h"
 #include "src/core/error.h"
+#include "src/stress/stress.h"
 
 namespace CLI {
 class App;
@@ -18,7 +20,7 @@ namespace sheaf {
 struct StressRequest {
   std::vector<std::string> cases;  // empty: all
   bool list = false, thorough = false;
-  std::string replay;  // a ray, as a failure prints it; empty: none
+  std::optional<stress::Ray> replay;
 };
 
 CLI::App* AddStressCommand(CLI::App& app, StressRequest& request);
