@@ -431,6 +431,10 @@ TEST_CASE("compare measures pictures, and --fail decides") {
   CHECK(entry["identical"] == true);
   CHECK(entry["finite"] == false);
   CHECK(work.Run({"compare", work / "a.pfm", work / "nan.pfm"}).code == 0);
+  REQUIRE(WritePfm(a, work / "e\x1b[31m.pfm").ok());
+  const Outcome odd = work.Run({"compare", work / "a.pfm", work / "e\x1b[31m.pfm"});
+  CHECK(odd.code == 0);
+  CHECK(!Contains(odd.out, "\x1b"));
   CHECK(
       Contains(work.Run({"compare", work / "black.pfm", work / "white.pfm"}).out, "psnr 0.00 dB"));
   CHECK(judge("psnr").code == 2);

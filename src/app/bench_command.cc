@@ -19,6 +19,7 @@
 #include "src/core/atomic_file.h"
 #include "src/core/rank_statistics.h"
 #include "src/core/version.h"
+#include "src/formats/printable.h"
 #include "src/render/render.h"
 
 namespace sheaf {
@@ -173,12 +174,14 @@ std::string PhasesText(const Json& report) {
 
 Result<Json> ReadBaseline(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorKind::kInputOutput, fmt::format("{}: cannot be read", path)};
+  if (!file) {
+    return Error{ErrorKind::kInputOutput, fmt::format("{}: cannot be read", PrintablePath(path))};
+  }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Json json = Json::parse(text, nullptr, false);
   const auto malformed = [&](const char* what) {
     return Error{ErrorKind::kInputOutput,
-                 fmt::format("{}: not what --json writes: {}", path, what)};
+                 fmt::format("{}: not what --json writes: {}", PrintablePath(path), what)};
   };
   if (json.is_discarded() || !json.is_object()) return malformed("no JSON object");
   for (const char* key : {"camera", "width", "height", "samples"}) {
@@ -201,8 +204,8 @@ Result<Json> ReadBaseline(const std::string& path) {
 }
 
 Error OtherFrame(const std::string& path, const char* what, const Json& before, const Json& now) {
-  return Usage(fmt::format("--baseline {}: its {} is {}, here it is {}", path, what, before.dump(),
-                           now.dump()));
+  return Usage(fmt::format("--baseline {}: its {} is {}, here it is {}", PrintablePath(path), what,
+                           before.dump(), now.dump()));
 }
 
 // A scene may lie elsewhere by now, but goes by its name.

@@ -242,7 +242,8 @@ double Decibels(double psnr) { return std::round(100 * psnr) / 100 + 0.0; }
 
 Result<ExitCode> ComparePictures(const CompareRequest& request) {
   if (request.inputs.size() < 2) {
-    return Usage(fmt::format("{}: a second picture is missing", request.inputs.front()));
+    return Usage(
+        fmt::format("{}: a second picture is missing", PrintablePath(request.inputs.front())));
   }
   const Transfer transfer = request.transfer == "srgb" ? Transfer::kSrgb : Transfer::kLinear;
   const Result<Film> reference = ReadDisplayValues(request.inputs.front(), transfer);
@@ -266,8 +267,8 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     const Film& a = is_mixed ? *shown_reference : reference.value();
     const Film& b = test.value();
     if (a.width != b.width || a.height != b.height) {
-      return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", path, b.width, b.height,
-                               request.inputs.front(), a.width, a.height));
+      return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", PrintablePath(path), b.width,
+                               b.height, PrintablePath(request.inputs.front()), a.width, a.height));
     }
     const PictureMetrics metrics = MeasurePictures(a, b, transfer);
     const std::vector<std::string> broken = BrokenLimits({metrics, finite}, request.limits);
@@ -283,7 +284,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     text += fmt::format(
         "{}: rmse {:.6g}, psnr {:.2f} dB, largest error {:.6g}, {} pixels over 1/255, flip "
         "{:.6g}{}{}\n",
-        path, metrics.rmse, Decibels(metrics.psnr), metrics.largest, metrics.over,
+        PrintablePath(path), metrics.rmse, Decibels(metrics.psnr), metrics.largest, metrics.over,
         metrics.mean_flip, broken.empty() ? "" : "; ", fmt::join(broken, ", "));
   }
   const Status written = WriteStandardOutput(request.json ? JsonText(json) : text);
@@ -344,7 +345,7 @@ Result<ExitCode> RunCompare(const CompareRequest& request) {
   if (mode == Mode::kPictures) return ComparePictures(request);
   if (request.inputs.size() > 1) {
     return Usage(fmt::format("{}: no .png, .pfm or .exr, and of scenes there can be only one",
-                             request.inputs.front()));
+                             PrintablePath(request.inputs.front())));
   }
   return CompareRenderings(request);
 }

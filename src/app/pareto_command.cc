@@ -297,8 +297,9 @@ Status RunPareto(const ParetoRequest& request) {
   std::error_code error;
   std::filesystem::create_directories(request.output, error);
   if (error) {
-    return Error{ErrorKind::kInputOutput, fmt::format("{}: no folder can be made there: {}",
-                                                      request.output, error.message())};
+    return Error{ErrorKind::kInputOutput,
+                 fmt::format("{}: no folder can be made there: {}", PrintablePath(request.output),
+                             error.message())};
   }
   const Status writable = CheckWritable(request.output + "/report.json");
   if (!writable) return writable;
@@ -323,7 +324,7 @@ Status RunPareto(const ParetoRequest& request) {
     if (!paths) return paths.error();
     const Status written = WriteStandardOutput(FrontText(request, points.value()));
     if (!written) return written;
-    for (const std::string& path : paths.value()) Say(request, "wrote " + path);
+    for (const std::string& path : paths.value()) Say(request, "wrote " + PrintablePath(path));
   }
   return Done{};
 }
