@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -536,6 +537,39 @@ TEST_CASE("check reads every scene, and says what it would skip") {
   CHECK(json::parse(listed.out)[0]["triangles"] == 2);
 }
 
+TEST_CASE("check lists bad scenes too, and the first decides the code") {
+  const Workspace work;
+  WriteText(work / "bad.obj", "v 0 0\n");
+  const Outcome outcome =
+      work.Run({"check", kScene, work / "bad.obj", work / "absent.obj", "--json"});
+  CHECK(outcome.code == 3);
+  CHECK(LineCount(outcome.err) == 2);
+  const json scenes = json::parse(outcome.out);
+  REQUIRE(scenes.size() == 3);
+  CHECK(!scenes[0].contains("error"));
+  CHECK(scenes[1] ==
+        json{{"path", work / "bad.obj"}, {"error", (work / "bad.obj") + ":1: 2 numbers of 3"}});
+  CHECK(scenes[2]["path"] == work / "absent.obj");
+  CHECK(work.Run({"check", work / "absent.obj", work / "bad.obj"}).code == 4);
+
+  WriteText(work / "e\x1b[31m.obj", kTriangle);
+  const Outcome odd = work.Run({"check", work / "e\x1b[31m.obj"});
+  CHECK(Contains(odd.out, "e\\u001B[31m.obj: sound: 1 object, 0 spheres, 1 triangle, 1 light, 1 "));
+}
+
+TEST_CASE("a PNG that is empty or cut short says so") {
+  const Workspace work;
+  REQUIRE(work.Render({"-q", "-o", work / "a.png"}).code == 0);
+  const std::string whole = ReadText(work / "a.png");
+  for (const std::size_t size : {std::size_t{0}, std::size_t{30}, whole.size() / 2}) {
+    WriteText(work / "cut.png", whole.substr(0, size));
+    const Outcome outcome = work.Run({"convert", work / "cut.png", "-o", work / "x.png"});
+    CHECK(outcome.code == 4);
+    CHECK(outcome.err ==
+          "sheaf: " + (work / "cut.png") + ": no whole PNG: the file is empty or cut short\n");
+  }
+}
+
 TEST_CASE("parts of a picture, merged, are the whole to the bit") {
   const Workspace work;
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
@@ -665,6 +699,19 @@ TEST_CASE("convert keeps every bit that the format holds") {
   CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "x.json"}).code == 2);
   CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "a.pfm"}).code == 2);
   CHECK(work.Run({"convert", work / "none.pfm", "-o", work / "x.png"}).code == 4);
+}
+
+TEST_CASE("halves end at 65504, but for what is infinite") {
+  const Workspace work;
+  Film film(2, 1);
+  const float infinite = std::numeric_limits<float>::infinity();
+  film.rgb = {1.0f, 1e6f, infinite, -1e6f, 65520.0f, 0.5f};
+  REQUIRE(WritePfm(film, work / "a.pfm").ok());
+  REQUIRE(work.Run({"convert", work / "a.pfm", "-o", work / "a.exr", "--bits", "16"}).code == 0);
+  REQUIRE(work.Run({"convert", work / "a.exr", "-o", work / "b.pfm"}).code == 0);
+  const auto expected = {1.0f, 65504.0f, infinite, -65504.0f, 65504.0f, 0.5f};
+  const Film read = ReadPfm(work / "b.pfm").value();
+  CHECK(std::equal(read.rgb.begin(), read.rgb.end(), expected.begin(), expected.end()));
 }
 
 TEST_CASE("without arguments the help goes to stderr, and the code is 2") {
@@ -965,7 +1012,7 @@ TEST_CASE("the target that ran is the one that was asked for") {
       json::parse(work.Run({"info", "--json"}).out)["targets"]["usable"];
   REQUIRE(!targets.empty());
   const std::string best = targets.front();
-  targets.push_back("scalar");
+  CHECK(targets.back() == "scalar");
   for (const std::string& target : targets) {
     const Outcome outcome = work.Render({"-q", "--json", "--target", target, "-o", work / "a.png"});
     REQUIRE(outcome.code == 0);

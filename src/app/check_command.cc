@@ -4,12 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "src/app/exit_code.h"
 #include "src/app/json_text.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
+#include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
@@ -32,11 +31,19 @@ Json CheckJson(const std::string& path, const OpenedScene& opened) {
   return json;
 }
 
+// E.g. "1 light" or "3 lights".
+std::string CountText(const Json& json, const std::string& kind) {
+  const auto count = json[kind].get<std::size_t>();
+  return fmt::format("{} {}", count, kind.substr(0, kind.size() - (count == 1 ? 1 : 0)));
+}
+
 std::string CheckText(const Json& json) {
-  std::string text =
-      fmt::format("{}: sound: {} objects, {} spheres, {} triangles, {} lights, {} cameras\n",
-                  json["path"].get<std::string>(), json["objects"].dump(), json["spheres"].dump(),
-                  json["triangles"].dump(), json["lights"].dump(), json["cameras"].dump());
+  std::vector<std::string> counts;
+  for (const char* kind : {"objects", "spheres", "triangles", "lights", "cameras"}) {
+    counts.push_back(CountText(json, kind));
+  }
+  std::string text = fmt::format("{}: sound: {}\n", PrintablePath(json["path"].get<std::string>()),
+                                 fmt::join(counts, ", "));
   const auto skipped = json["skipped"].get<std::vector<std::string>>();
   if (!skipped.empty()) text += fmt::format("  skipped: {}\n", fmt::join(skipped, ", "));
   for (const Json& warning : json["warnings"]) {
@@ -56,23 +63,26 @@ CLI::App* AddCheckCommand(CLI::App& app, CheckRequest& request) {
   return check;
 }
 
-Status RunCheck(const CheckRequest& request) {
+Result<ExitCode> RunCheck(const CheckRequest& request) {
   Json all = Json::array();
-  std::optional<Error> first;
+  ExitCode code = ExitCode::kOk;
   for (const std::string& path : request.scenes) {
     const Result<OpenedScene> opened = OpenSceneWithWarnings(path, request.options);
     if (!opened) {
-      if (first) Report(opened.error());
-      if (!first) first = opened.error();
+      const ExitCode bad = Report(opened.error());
+      if (code == ExitCode::kOk) code = bad;
+      all.push_back({{"path", path}, {"error", opened.error().message}});
       continue;
     }
     const Json json = CheckJson(path, opened.value());
     all.push_back(json);
     if (request.json) continue;
-    if (const Status written = WriteStandardOutput(CheckText(json)); !written) return written;
+    const Status written = WriteStandardOutput(CheckText(json));
+    if (!written) return written.error();
   }
-  if (request.json && !first) return WriteStandardOutput(JsonText(all));
-  return first ? Status(*first) : Status(Done{});
+  const Status written = request.json ? WriteStandardOutput(JsonText(all)) : Status(Done{});
+  if (!written) return written.error();
+  return code;
 }
 
 }  // namespace sheaf

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/app/exit_code.h"
 #include "src/app/open_scene.h"
 #include "src/core/error.h"
 
@@ -23,8 +24,8 @@ struct CheckRequest {
 // Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
 CLI::App* AddCheckCommand(CLI::App& app, CheckRequest& request);
 
-// Reads every scene, also after a bad one; the error returned is the first, the others are printed.
-Status RunCheck(const CheckRequest& request);
+// Reads every scene, also after a bad one, and prints the errors; the code is that of the first.
+Result<ExitCode> RunCheck(const CheckRequest& request);
 
 }  // namespace sheaf
 

@@ -15,6 +15,7 @@
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/core/version.h"
+#include "src/formats/printable.h"
 #include "src/scene/scene.h"
 
 namespace sheaf {
@@ -35,12 +36,14 @@ std::string ProcessorModel() {
 Json VectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json MachineJson() {
+  std::vector<std::string> usable = simd::UsableTargets();
+  usable.push_back("scalar");
   return {
       {"sheaf", {{"version", kVersion}, {"compiler", kCompiler}, {"build_type", kBuildType}}},
       {"processor", {{"model", ProcessorModel()}, {"cores", std::thread::hardware_concurrency()}}},
       {"targets",
        {{"compiled", simd::CompiledTargets()},
-        {"usable", simd::UsableTargets()},
+        {"usable", usable},
         {"chosen", simd::RunningTarget()},
         {"lanes", simd::RunningLanes()}}},
   };
@@ -108,7 +111,8 @@ Json SceneJson(const std::string& path, const Scene& scene) {
 
 std::string JoinNames(const Json& names, const char* separator) {
   if (names.empty()) return "none";
-  return fmt::format("{}", fmt::join(names.get<std::vector<std::string>>(), separator));
+  return PrintablePath(
+      fmt::format("{}", fmt::join(names.get<std::vector<std::string>>(), separator)));
 }
 
 std::string VectorText(const Json& v) {
@@ -117,7 +121,7 @@ std::string VectorText(const Json& v) {
 }
 
 std::string TextOf(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? PrintablePath(value.get<std::string>()) : value.dump();
 }
 
 std::string MachineText(const Json& machine) {
@@ -129,7 +133,7 @@ std::string MachineText(const Json& machine) {
       "compiler    {}, {}\n"
       "processor   {}, {} cores\n"
       "compiled    {}\n"
-      "usable      {}, scalar\n"
+      "usable      {}\n"
       "chosen      {}, {} lanes of float\n",
       TextOf(sheaf["version"]), TextOf(sheaf["compiler"]), TextOf(sheaf["build_type"]),
       TextOf(processor["model"]), TextOf(processor["cores"]), JoinNames(targets["compiled"], ", "),

@@ -287,7 +287,8 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
   AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
   AddParsed(*render, "--tile", request.tile, "N|I/N",
             fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),
-            "Pixels a side of a tile, which change no picture; I/N: render part I of N alone",
+            "Pixels a side of a tile, which change no picture but in fast precision; I/N: part I "
+            "of N alone",
             &ParseTile);
   render->add_option("--progress", request.progress, "What stderr shows meanwhile")
       ->option_text("auto|plain|none")

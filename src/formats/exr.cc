@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -99,6 +100,12 @@ std::vector<Channel> ChannelsOf(const PictureSpec& spec) {
   return channels;
 }
 
+// Finite light stays finite: beside an infinite pixel no filter and no mean has a value.
+Imath::half ToHalf(float value) {
+  constexpr auto kMost = static_cast<float>(HALF_MAX);
+  return Imath::half(std::isfinite(value) ? std::clamp(value, -kMost, kMost) : value);
+}
+
 }  // namespace
 
 class ExrWriter::Encoder {
@@ -161,7 +168,7 @@ class ExrWriter::Encoder {
       for (std::size_t x = 0; x < width; ++x) {
         const float value = from[x * step + static_cast<std::size_t>(channel.component)];
         if (channel.is_half) {
-          channel.halves.push_back(Imath::half(value));
+          channel.halves.push_back(ToHalf(value));
         } else {
           channel.floats.push_back(value);
         }

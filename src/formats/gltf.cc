@@ -173,8 +173,8 @@ class GltfReader {
     }
     for (const std::string& extension : model_.extensionsUsed) {
       if (kKnownExtensions.contains(extension)) continue;
-      files_.Warn(fmt::format("{}: the extension \"{}\" is not known, and is passed over", name_,
-                              Printable(extension)));
+      files_.Warn(fmt::format("{}: the extension \"{}\" is not known, and is passed over",
+                              PrintablePath(name_), Printable(extension)));
     }
     return true;
   }
@@ -241,7 +241,8 @@ class GltfReader {
       material.base_colour = texture;
     }
     if (from.alphaMode == "MASK" || from.alphaMode == "BLEND") {
-      files_.Warn(fmt::format("{}: {}: alpha is not read: the material is opaque", name_, place));
+      files_.Warn(fmt::format("{}: {}: alpha is not read: the material is opaque",
+                              PrintablePath(name_), place));
     }
     scene_.materials.push_back(std::move(material));
     return true;
@@ -523,7 +524,8 @@ class GltfReader {
       const tinygltf::Primitive& primitive = mesh.primitives[i];
       const std::string place = fmt::format("/meshes/{}/primitives/{}", index, i);
       if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-        files_.Warn(fmt::format("{}: {}: points and lines are passed over", name_, place));
+        files_.Warn(
+            fmt::format("{}: {}: points and lines are passed over", PrintablePath(name_), place));
         continue;
       }
       Mesh built;

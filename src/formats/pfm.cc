@@ -20,10 +20,6 @@ namespace {
 
 constexpr std::size_t kBytesPerPixel = 3 * sizeof(float);
 
-Error Malformed(const std::string& path, std::string_view what) {
-  return {ErrorKind::kInputOutput, fmt::format("{}: {}", path, what)};
-}
-
 std::uint32_t SwapBytes(std::uint32_t bits) {
   return bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
 }
@@ -111,27 +107,28 @@ Result<Film> ReadPfm(const std::string& path) {
   std::string_view rest = bytes.value();
 
   const std::string_view magic = TakeWord(rest);
-  if (magic == "Pf") return Malformed(path, "a grey PFM; a colour one (PF) is needed");
-  if (magic != "PF") return Malformed(path, "no PFM: it does not begin with PF");
+  if (magic == "Pf") return InputError(path, "a grey PFM; a colour one (PF) is needed");
+  if (magic != "PF") return InputError(path, "no PFM: it does not begin with PF");
   int width = 0, height = 0;
   double scale = 0.0;
   if (!ParseWhole(TakeWord(rest), width) || !ParseWhole(TakeWord(rest), height) || width < 1 ||
       height < 1 || width > kMaxImageSide || height > kMaxImageSide) {
-    return Malformed(
+    return InputError(
         path, fmt::format("the PFM header needs a width and a height of 1 to {}", kMaxImageSide));
   }
   if (!ParseWhole(TakeWord(rest), scale) || !std::isfinite(scale) || scale == 0.0) {
-    return Malformed(path, "the PFM header needs a scale other than 0");
+    return InputError(path, "the PFM header needs a scale other than 0");
   }
   // One single byte of white space ends the header; the next may be a float's.
-  if (rest.empty() || !IsSpace(rest.front())) return Malformed(path, "the PFM header is cut short");
+  if (rest.empty() || !IsSpace(rest.front()))
+    return InputError(path, "the PFM header is cut short");
   rest.remove_prefix(1);
 
   const std::size_t row_bytes = kBytesPerPixel * static_cast<std::size_t>(width);
   const std::size_t expected = row_bytes * static_cast<std::size_t>(height);
   if (rest.size() != expected) {
-    return Malformed(path, fmt::format("{}x{} pixels need {} bytes after the header, not {}", width,
-                                       height, expected, rest.size()));
+    return InputError(path, fmt::format("{}x{} pixels need {} bytes after the header, not {}",
+                                        width, height, expected, rest.size()));
   }
   Film film(width, height);
   for (int y = 0; y < height; ++y) {

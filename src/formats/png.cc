@@ -11,11 +11,12 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "src/core/atomic_file.h"
 #include "src/core/version.h"
+#include "src/formats/printable.h"
+#include "src/formats/read_file.h"
 
 namespace sheaf {
 namespace {
@@ -35,10 +36,6 @@ struct Complaint {
 }
 
 void OnWarning(png_structp, png_const_charp) {}
-
-Error Failed(const std::string& path, std::string_view what) {
-  return {ErrorKind::kInputOutput, fmt::format("{}: {}", path, what)};
-}
 
 // Of the whole picture, in the file of a part.
 constexpr char kSizeKey[] = "sheaf:size";
@@ -196,7 +193,7 @@ class PngWriter::Encoder {
 
   Status StatusOf(bool encoded) const {
     if (error_) return *error_;
-    if (!encoded) return Failed(path_, fmt::format("cannot be encoded: {}", complaint_.text));
+    if (!encoded) return InputError(path_, fmt::format("cannot be encoded: {}", complaint_.text));
     return Done{};
   }
 
@@ -248,23 +245,28 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_b
                                              PngReader& reader) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
-  if (!file) return Failed(path, std::strerror(errno));
-  if (!reader.ReadHeader(file.get(), most_bits)) return Failed(path, reader.complaint.text);
+  if (!file) return InputError(path, std::strerror(errno));
+  const auto failed = [&] {
+    return InputError(path, std::feof(file.get()) != 0
+                                ? "no whole PNG: the file is empty or cut short"
+                                : Printable(reader.complaint.text));
+  };
+  if (!reader.ReadHeader(file.get(), most_bits)) return failed();
 
   const auto height = static_cast<std::size_t>(reader.height);
   // Deflate shrinks at most 1032 to 1: a header that promises more pixels than that lies. Packed
   // formats (1 bit a pixel, spread to 24) have that much less behind each byte.
   const long begin = std::ftell(file.get());
-  if (std::fseek(file.get(), 0, SEEK_END) != 0) return Failed(path, "is no seekable file");
+  if (std::fseek(file.get(), 0, SEEK_END) != 0) return InputError(path, "is no seekable file");
   const auto size = static_cast<std::size_t>(std::ftell(file.get()));
   std::fseek(file.get(), begin, SEEK_SET);
   if (reader.row_bytes * height / (24 * 1032) > size) {
-    return Failed(path, "has more pixels than its bytes can hold");
+    return InputError(path, "has more pixels than its bytes can hold");
   }
   std::vector<std::uint8_t> bytes(reader.row_bytes * height);
   std::vector<png_bytep> rows(height);
   for (std::size_t y = 0; y < height; ++y) rows[y] = bytes.data() + reader.row_bytes * y;
-  if (!reader.ReadRows(rows.data())) return Failed(path, reader.complaint.text);
+  if (!reader.ReadRows(rows.data())) return failed();
   return bytes;
 }
 
