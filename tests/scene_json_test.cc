@@ -569,6 +569,10 @@ class SchemaValidator {
       } else if (word == "items") {
         if (!value.is_array()) continue;
         for (const json& element : value) valid &= Check(argument, element);
+      } else if (word == "contains") {
+        valid &= !value.is_array() ||
+                 std::any_of(value.begin(), value.end(),
+                             [&](const json& element) { return Check(argument, element); });
       } else if (word == "minItems") {
         valid &= !value.is_array() || value.size() >= argument.get<std::size_t>();
       } else if (word == "maxItems") {
@@ -769,6 +773,17 @@ TEST_CASE("schema and reader know the same keys, types and ranges") {
   CollectProperties(schema, &properties);
   CHECK(properties.size() > 50);
   CHECK(validator.properties_seen() == properties);
+
+  // An include may have all the cameras.
+  for (const char* text : {R"({"objects": [{"include": "schema-part.json"}]})",
+                           R"({"objects": [{"include": "schema-part.json"}], "cameras": []})"}) {
+    CHECK(Outcome(text) == "ok");
+    CHECK(validator.Validate(json::parse(text)));
+  }
+  for (const char* text : {"{}", R"({"cameras": []})", R"({"objects": []})"}) {
+    CHECK(Outcome(text) != "ok");
+    CHECK(!validator.Validate(json::parse(text)));
+  }
 
   int accepted = 0, refused = 0, beyond = 0;
   for (const json& mutation : Mutations(complete)) {
