@@ -169,6 +169,28 @@ TEST_CASE("NFF") {
   CheckSurvives(folder, "a.nff", kNff);
 }
 
+TEST_CASE("OBJ: a line goes on after a backslash, and lines keep their numbers") {
+  const Folder folder;
+  const std::string vertices = "# C:\\\nv 0 0 0\nv 1 \\\n0 0\nv 0 \\\r\n1 \\\r\n0\n";
+  const Scene scene = ReadOrFail(folder.Write("a.obj", vertices + "f 1 2 \\\n3\n"));
+  CHECK(MeshAt(scene, 0).triangles.size() == 1);
+  CHECK(MeshAt(scene, 0).positions.at(2) == glm::vec3(0, 1, 0));
+  CheckRefused(folder.Write("b.obj", vertices + "f 1 2 9\n"), "b.obj:8: vertex 9 of 3");
+}
+
+TEST_CASE("OBJ: a material that the library lacks is a warning") {
+  const Folder folder;
+  folder.Write("a.mtl", "newmtl brick\nKd 1 0 0\n");
+  const std::string path = folder.Write(
+      "a.obj",
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl brik\nf 1 2 3\nusemtl brick\nf 1 2 3\n");
+  const Result<ReadSceneResult> read = ReadScene(path);
+  REQUIRE(read.ok());
+  REQUIRE(read.value().warnings.size() == 1);
+  CHECK(read.value().warnings[0] ==
+        path + ":5: usemtl: no material \"brik\", so grey; did you mean \"brick\"?");
+}
+
 TEST_CASE("NFF: a cone on three lines, as Haines has it, or on one") {
   const Folder folder;
   const std::string sphere = "s 0 0 0 1\n";

@@ -16,6 +16,7 @@
 #include "src/formats/image.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/suggest_name.h"
 #include "src/formats/text_scanner.h"
 
 namespace sheaf {
@@ -38,6 +39,8 @@ class ObjChecker {
         CheckNumbers(1, &coordinates_);
       else if (word == "f")
         CheckFace();
+      else if (word == "usemtl")
+        materials_.try_emplace(std::string(scanner_.Word()), scanner_.line());
     }
     // Faces may refer to what comes after them.
     for (const auto& [used, given, what] :
@@ -52,6 +55,9 @@ class ObjChecker {
     if (!error_ && faces_ == 0) error_ = SceneError(name_, "no face");
     return error_ ? Status(*error_) : Status(Done{});
   }
+
+  // The names that faces use, with the line of the first use.
+  const std::map<std::string, std::size_t>& materials() const { return materials_; }
 
  private:
   struct Highest {
@@ -121,7 +127,33 @@ class ObjChecker {
   std::optional<Error> error_;
   std::uint64_t vertices_ = 0, normals_ = 0, coordinates_ = 0, faces_ = 0;
   Highest most_vertex_, most_normal_, most_coordinate_;
+  std::map<std::string, std::size_t> materials_;
 };
+
+// A line that ends in a backslash goes on in the next. The joined line is followed by as many empty
+// ones, so that the others keep their numbers. Comments go on nowhere: paths of Windows are in
+// them.
+std::string JoinLines(std::string_view text) {
+  std::string joined;
+  joined.reserve(text.size());
+  std::size_t owed = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    TextScanner words(line);
+    const bool is_comment = owed == 0 && words.NextLine() && words.Word().starts_with('#');
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.ends_with('\\') && !is_comment) {
+      joined.append(line.substr(0, line.size() - 1)) += ' ';
+      ++owed;
+    } else {
+      joined.append(line).append(owed + 1, '\n');
+      owed = 0;
+    }
+  }
+  return joined;
+}
 
 // Numbers where numbers belong: the library takes anything else for 0.
 Status CheckMtl(std::string_view text, const std::string& path) {
@@ -172,13 +204,14 @@ class MtlReader : public tinyobj::MaterialReader {
     }
     const Result<std::string> text = ReadWholeFile(path.value(), kMaxTextBytes);
     if (!text) {
-      files_.Warn(fmt::format("{}: mtllib: {}", name_, text.error().message));
+      files_.Warn(fmt::format("{}: mtllib: {}", PrintablePath(name_), text.error().message));
       return false;
     }
     if (const Status sound = CheckMtl(text.value(), path.value()); !sound) {
       error_ = sound.error();
       return false;
     }
+    has_library_ = true;
     const std::size_t first = materials->size();
     ViewBuffer buffer(text.value());
     std::istream stream(&buffer);
@@ -191,6 +224,7 @@ class MtlReader : public tinyobj::MaterialReader {
   }
 
   const std::optional<Error>& error() const { return error_; }
+  bool has_library() const { return has_library_; }
   // The file that a material comes from: its textures lie beside it.
   const std::string& library_of(std::size_t material) const { return library_of_[material]; }
 
@@ -198,6 +232,7 @@ class MtlReader : public tinyobj::MaterialReader {
   const std::string& name_;
   SceneFiles& files_;
   std::optional<Error> error_;
+  bool has_library_ = false;
   std::vector<std::string> library_of_;
 };
 
@@ -366,10 +401,26 @@ class ObjBuilder {
   std::vector<Corner> corners_;        // by vertex
 };
 
+void WarnOfMaterials(const std::map<std::string, std::size_t>& used,
+                     const std::vector<tinyobj::material_t>& materials, const std::string& name,
+                     SceneFiles& files) {
+  std::vector<std::string_view> known;
+  for (const tinyobj::material_t& material : materials) known.push_back(material.name);
+  for (const auto& [material, line] : used) {
+    if (std::find(known.begin(), known.end(), material) != known.end()) continue;
+    files.Warn(fmt::format("{}:{}: usemtl: no material \"{}\", so grey{}", PrintablePath(name),
+                           line, Printable(material), DidYouMean(material, known)));
+  }
+}
+
 }  // namespace
 
-Result<Scene> ParseObj(const std::string& text, const std::string& name, SceneFiles& files) {
-  if (const Status sound = ObjChecker(text, name).Check(); !sound) return sound.error();
+Result<Scene> ParseObj(const std::string& original, const std::string& name, SceneFiles& files) {
+  const bool may_go_on = original.find('\\') != std::string::npos;
+  const std::string joined = may_go_on ? JoinLines(original) : "";
+  const std::string& text = may_go_on ? joined : original;
+  ObjChecker checker(text, name);
+  if (const Status sound = checker.Check(); !sound) return sound.error();
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
@@ -381,6 +432,7 @@ Result<Scene> ParseObj(const std::string& text, const std::string& name, SceneFi
                                         &reader, true, false);
   if (reader.error()) return *reader.error();
   if (!is_read) return SceneError(name, Printable(error));
+  if (reader.has_library()) WarnOfMaterials(checker.materials(), materials, name, files);
   ObjBuilder builder(files, attributes);
   if (const Status added = builder.AddMaterials(materials, reader); !added) return added.error();
   for (const tinyobj::shape_t& shape : shapes) builder.AddShape(shape);
