@@ -502,6 +502,16 @@ TEST_CASE("a model alone renders, from where the command line says") {
             .code == 2);
 }
 
+TEST_CASE("--fov is not for an orthographic camera") {
+  const Workspace work;
+  WriteText(work / "a.json", R"({"cameras": [
+      {"name": "flat", "eye": [0, 0, 5], "look_at": [0, 0, 0], "orthographic": {"height": 3}}]})");
+  const Outcome outcome =
+      work.Run({"render", work / "a.json", "-o", work / "a.png", "--fov", "40"});
+  CHECK(outcome.code == 2);
+  CHECK(outcome.err == "sheaf: --fov: the scene's first camera, \"flat\", is orthographic\n");
+}
+
 TEST_CASE("a bad model is one line and code 3, and leaves no picture") {
   const Workspace work;
   WriteText(work / "a.obj", std::string(kTriangle) + "f 1 2 9\n");
@@ -696,6 +706,17 @@ TEST_CASE("convert keeps every bit that the format holds") {
       work.Run({"render", work / "a.json", "-o", work / "c.pfm", "-q", "--size", "40x30"}).code ==
       0);
   CHECK(ReadText(work / "a.pfm") == ReadText(work / "c.pfm"));
+  // A PNG keeps its depth, and what it says of itself.
+  REQUIRE(work.Run({"convert", work / "a.png", "-o", work / "b.png"}).code == 0);
+  CHECK(ReadText(work / "a.png") == ReadText(work / "b.png"));
+  const Result<ReadPictureResult> kept = ReadPngFilm(work / "b.png");
+  REQUIRE(kept.ok());
+  CHECK(kept.value().bits == 16);
+  CHECK(kept.value().metadata.size() == 3);
+  // The largest coordinate is one after a detour by float, too.
+  WriteText(work / "huge.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
+  REQUIRE(work.Run({"convert", work / "huge.obj", "-o", work / "huge.json"}).code == 0);
+  CHECK(work.Run({"check", work / "huge.json"}).code == 0);
   CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "x.json"}).code == 2);
   CHECK(work.Run({"convert", work / "a.pfm", "-o", work / "a.pfm"}).code == 2);
   CHECK(work.Run({"convert", work / "none.pfm", "-o", work / "x.png"}).code == 4);
@@ -729,6 +750,17 @@ TEST_CASE("usage errors: one line on stderr, code 2, no file") {
     std::string says;
   } cases[] = {
       {{"rendr"}, "did you mean \"render\"?"},
+      {{"help"}, "did you mean \"--help\"?"},
+      {{"version"}, "did you mean \"--version\"?"},
+      {{"render", "--", kScene, "-o", png}, "unknown option \"-o\""},
+      {{"convert", kScene, "-o", work / "a.json", "--bits", "16"}, "--bits: for pictures"},
+      {{"convert", kScene, "-o", work / "a.json", "--transfer", "keep"}, "--transfer: for pict"},
+      {{"convert", work / "b.pfm", "-o", png, "--eye", "1,2,3"}, "--eye: for scenes"},
+      {{"render", kScene, "-o", png, "--camera", "up", "--eye", "0,0,9"},
+       "\"front\", which is not"},
+      {{"render", kScene, "-o", work / "{camera}.png", "--views", "sides", "--fov", "9"},
+       "--fov: m"},
+      {{"compare", kScene, "--camera", "up", "--look-at", "0,0,9"}, "--look-at: moves"},
       {{"render"}, "SCENE"},
       {{"render", kScene}, "--output"},
       {{"render", kScene, "-o", png, "--siez", "3x3"}, "did you mean \"--size\"?"},

@@ -325,7 +325,7 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
   if (!apart) return apart.error();
   CameraChoice choice;
   if (!request.camera.empty()) choice.cameras = {request.camera};
-  const auto cameras = ChooseCameras(choice, request.scene, scene);
+  const auto cameras = ChooseCameras(choice, request.options, request.scene, scene);
   if (!cameras) return cameras.error();
   const Camera& camera = *cameras.value().front();
   RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);

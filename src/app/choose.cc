@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "simd/target.h"
+#include "src/app/open_scene.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
@@ -122,6 +123,7 @@ Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& n
 }
 
 Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
+                                                 const SceneOptions& options,
                                                  const std::string& path, const Scene& scene) {
   std::vector<const Camera*> cameras;
   if (!choice.view.empty()) {
@@ -143,6 +145,15 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
       return Error{ErrorKind::kScene, fmt::format("{}: the scene has no camera", path)};
     }
     cameras.push_back(&scene.cameras.front());
+  }
+  const char* const aim = options.eye       ? "--eye"
+                          : options.look_at ? "--look-at"
+                          : options.fov     ? "--fov"
+                                            : nullptr;
+  const Camera& first = scene.cameras.front();
+  if (aim != nullptr && std::find(cameras.begin(), cameras.end(), &first) == cameras.end()) {
+    return Usage(fmt::format("{}: moves the scene's first camera, \"{}\", which is not chosen", aim,
+                             Printable(first.name)));
   }
   return cameras;
 }

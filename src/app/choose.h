@@ -39,14 +39,18 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
 // "auto" for the best. kUsage where one does not run here, or is there twice.
 Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names);
 
+struct SceneOptions;
+
 // Which cameras of a scene to use.
 struct CameraChoice {
   std::vector<std::string> cameras;  // empty: the view's, or the scene's first
   std::string view;                  // empty: none
 };
 
-// `path` is the scene's, for messages. At least one camera.
+// `path` is the scene's, for messages. At least one camera. kUsage where `options` aim the scene's
+// first camera and it is not among them.
 Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
+                                                 const SceneOptions& options,
                                                  const std::string& path, const Scene& scene);
 
 // Where this stands in an output's path, the camera's name goes.

@@ -118,7 +118,7 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
   const Result<Scene> read = OpenScene(path, request.options);
   if (!read) return read.error();
   const Scene& scene = read.value();
-  const auto cameras = ChooseCameras(request.choice, path, scene);
+  const auto cameras = ChooseCameras(request.choice, request.options, path, scene);
   if (!cameras) return cameras.error();
 
   RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);

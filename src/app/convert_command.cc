@@ -11,6 +11,7 @@
 #include "src/app/choose.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
+#include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
 #include "src/formats/write_scene_json.h"
 #include "src/scene/srgb.h"
@@ -66,6 +67,10 @@ Status WriteTextures(const TextureNames& names, const std::string& output, Scene
 }
 
 Status ConvertScene(const ConvertRequest& request) {
+  if (request.bits || request.transfer) {
+    return Usage(fmt::format("{}: for pictures, and {} is a scene",
+                             request.bits ? "--bits" : "--transfer", PrintablePath(request.input)));
+  }
   if (!IsScenePath(request.output) || IsModelPath(request.output)) {
     return Usage(
         fmt::format("-o {}: a scene becomes scene JSON, whose name ends in .json", request.output));
@@ -100,6 +105,10 @@ void DecodeLight(ReadPictureResult& picture) {
 }
 
 Status ConvertPicture(const ConvertRequest& request) {
+  if (const auto option = GivenSceneOption(request.options)) {
+    return Usage(
+        fmt::format("{}: for scenes, and {} is a picture", *option, PrintablePath(request.input)));
+  }
   if (const Status known = CheckPicturePath(request.output); !known) return known;
   if (request.bits) {
     if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
@@ -109,15 +118,20 @@ Status ConvertPicture(const ConvertRequest& request) {
   if (!read) return read.error();
   ReadPictureResult& picture = read.value();
   const Film& film = picture.film;
-  const bool keeps = request.transfer == "keep";
+  const std::string transfer = request.transfer.value_or("keep");
+  const bool keeps = transfer == "keep";
   PictureSpec spec = WholePicture(film.width, film.height, Transfer::kLinear);
   if (picture.window.width() > 0) {
     spec.window = picture.window;
     spec.full_width = picture.full_width;
     spec.full_height = picture.full_height;
   }
-  spec.bits = request.bits.value_or(0);
-  if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
+  spec.metadata = picture.metadata;
+  // Whoever halves a PNG's light, or spreads it to 32 bits, says so.
+  const bool is_same_kind = picture.is_display != HoldsFloats(request.output);
+  const bool keeps_bits = is_same_kind && CheckPictureBits(request.output, picture.bits).ok();
+  spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
+  if (transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   if (keeps && picture.is_display && !HoldsFloats(request.output)) {
     spec.values = Values::kEncoded;
   } else {

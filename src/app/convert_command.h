@@ -18,7 +18,7 @@ struct ConvertRequest {
   SceneOptions options;
   std::string input, output;
   std::optional<int> bits;
-  std::string transfer = "keep";
+  std::optional<std::string> transfer;  // keep, if absent
 };
 
 // Adds the subcommand; parsing then fills `request`, which has to outlive `app`.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -86,13 +87,16 @@ std::string DescribeExtra(const CLI::App& app, const std::string& word) {
   }
   for (const CLI::App* subcommand : app.get_subcommands({}))
     known.push_back(subcommand->get_name());
+  const auto option = std::find(known.begin(), known.end(), "--" + word);
+  const std::string hint = option != known.end() ? fmt::format("; did you mean \"{}\"?", *option)
+                                                 : DidYouMean(word, {known.begin(), known.end()});
   const bool is_option = word.starts_with("-");
   const bool needs_subcommand = app.get_require_subcommand_min() > 0;
   return fmt::format("{} \"{}\"{}",
                      is_option          ? "unknown option"
                      : needs_subcommand ? "unknown subcommand"
                                         : "unexpected argument",
-                     Printable(word), DidYouMean(word, {known.begin(), known.end()}));
+                     Printable(word), hint);
 }
 
 // CLI11 would take "--json=" for "--json", and "--size= 9x9" for "--size 9x9".
@@ -114,7 +118,9 @@ ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
   }
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const CLI::App& innermost = parsed.empty() ? app : *parsed.front();
-  const std::vector<std::string> extra = innermost.remaining();
+  std::vector<std::string> extra = innermost.remaining();
+  // What stands after it is wrong, where anything is.
+  extra.erase(std::remove(extra.begin(), extra.end(), "--"), extra.end());
   const bool about_extra = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                            dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const std::string what =

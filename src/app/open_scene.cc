@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <utility>
+#include <variant>
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
@@ -36,6 +37,10 @@ Status Aim(const SceneOptions& options, Scene* scene) {
   Camera& camera = scene->cameras.front();
   camera.eye = options.eye.value_or(camera.eye);
   camera.look_at = options.look_at.value_or(camera.look_at);
+  if (options.fov && std::holds_alternative<Orthographic>(camera.projection)) {
+    return Usage(fmt::format("--fov: the scene's first camera, \"{}\", is orthographic",
+                             Printable(camera.name)));
+  }
   if (options.fov) camera.projection = Perspective{*options.fov};
   const Vec3d ahead = camera.look_at - camera.eye;
   if (!(glm::length(ahead) > 0)) return Usage("--eye, --look-at: the camera looks at its own eye");
@@ -62,6 +67,15 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options) {
              "Sides of an NFF file's cones and cylinders; 32 if absent");
   app.add_flag("--allow-outside", options.allow_outside,
                "Let the scene name files outside its folder");
+}
+
+std::optional<std::string> GivenSceneOption(const SceneOptions& options) {
+  if (options.eye) return "--eye";
+  if (options.look_at) return "--look-at";
+  if (options.fov) return "--fov";
+  if (options.cone_sides) return "--cone-sides";
+  if (options.allow_outside) return "--allow-outside";
+  return std::nullopt;
 }
 
 Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options) {

@@ -25,6 +25,9 @@ struct SceneOptions {
 
 void AddSceneOptions(CLI::App& app, SceneOptions& options);
 
+// The name of one of these options that the command line has, if any.
+std::optional<std::string> GivenSceneOption(const SceneOptions& options);
+
 struct OpenedScene {
   Scene scene;
   std::vector<std::string> warnings;

@@ -292,7 +292,7 @@ CLI::App* AddParetoCommand(CLI::App& app, ParetoRequest& request) {
 Status RunPareto(const ParetoRequest& request) {
   const Result<Scene> scene = OpenScene(request.scene, request.options);
   if (!scene) return scene.error();
-  const auto cameras = ChooseCameras(request.choice, request.scene, scene.value());
+  const auto cameras = ChooseCameras(request.choice, request.options, request.scene, scene.value());
   if (!cameras) return cameras.error();
   std::error_code error;
   std::filesystem::create_directories(request.output, error);

@@ -67,7 +67,7 @@ std::vector<Output> OutputsOf(const RenderRequest& request, const std::vector<Fr
 
 Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {
   const Result<std::vector<const Camera*>> cameras =
-      ChooseCameras(request.choice, request.scene, scene);
+      ChooseCameras(request.choice, request.options, request.scene, scene);
   if (!cameras) return cameras.error();
   if (cameras.value().size() > 1 && request.output.find(kCameraField) == std::string::npos) {
     return Usage(fmt::format("-o {}: the view \"{}\" has {} cameras, which need {} in the path",

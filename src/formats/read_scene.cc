@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <new>
 
@@ -160,12 +161,14 @@ void AimKeyLight(Scene* scene) {
 Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up) {
   Camera camera;
   camera.name = "default";
-  camera.look_at = (bounds.min + bounds.max) * 0.5;
+  // Of a model at the very limit neither point lies where no scene may have one.
+  const auto within = [](const Vec3d& p) { return glm::clamp(p, -kMaxCoordinate, kMaxCoordinate); };
+  camera.look_at = within((bounds.min + bounds.max) * 0.5);
   camera.up = up;
   constexpr double kFov = 40, kSine = 0.34202014332566873;  // of half of it
   const double radius = std::max(glm::length(bounds.max - bounds.min) * 0.5, 1e-6);
   const Vec3d away = glm::normalize(Vec3d(0.45, 0.35, 1));
-  camera.eye = camera.look_at + away * (radius / kSine);
+  camera.eye = within(camera.look_at + away * (radius / kSine));
   camera.projection = Perspective{kFov};
   return camera;
 }

@@ -1,5 +1,6 @@
 #include "src/formats/write_scene_json.h"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -58,7 +59,11 @@ struct ShapeWriter {
       Json json = Json::array();
       for (const auto& vector : vectors) {
         Json numbers = Json::array();
-        for (int i = 0; i < vector.length(); ++i) numbers.push_back(vector[i]);
+        // 1e30 as a float lies above 1e30, and is what the reader makes of 1e30 again.
+        for (int i = 0; i < vector.length(); ++i) {
+          numbers.push_back(
+              std::clamp(static_cast<double>(vector[i]), -kMaxCoordinate, kMaxCoordinate));
+        }
         json.push_back(std::move(numbers));
       }
       return json;
