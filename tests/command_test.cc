@@ -641,6 +641,7 @@ TEST_CASE("merge joins parts of one picture alone") {
     render("2" + ending, {"--tile", "2/2"}, work / "moved/crystal-ball.json");
     render("camera" + ending, {"--tile", "2/2", "--camera", "up"});
     render("samples" + ending, {"--tile", "2/2", "--spp", "2"});
+    render("eye" + ending, {"--tile", "2/2", "--eye", "0,0,9"});
     render("scene" + ending, {"--tile", "2/2"}, work / "other.json");
     const auto merge = [&](const std::string& name) {
       return work.Run({"merge", work / ("1" + ending), work / name, "-o", work / ("m" + ending)});
@@ -648,6 +649,7 @@ TEST_CASE("merge joins parts of one picture alone") {
     CHECK(merge("2" + ending).code == 0);  // the same scene in another folder
     for (const auto& [name, says] : {std::pair("camera", ": Camera \"up\", and "),
                                      {"samples", ": Settings \"32x24 pixels, 2 s"},
+                                     {"eye", ": Settings \"32x24 pixels, "},
                                      {"scene", ": Scene \""}}) {
       const Outcome outcome = merge(name + ending);
       CAPTURE(outcome.err);

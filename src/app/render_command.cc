@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+#include <variant>
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
@@ -141,11 +142,21 @@ std::uint64_t PixelCount(const PixelSize& size) {
   return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
-std::string SettingsText(const RenderOptions& options) {
-  return fmt::format("{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}",
-                     options.width, options.height, options.samples, options.max_depth,
-                     PrecisionName(options.precision), options.min_weight,
-                     options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "");
+// With the camera's place: parts are of one picture where these texts are the same, and the command
+// line may have moved it.
+std::string SettingsText(const RenderOptions& options, const Camera& camera) {
+  const Vec3d& eye = camera.eye;
+  const Vec3d& look_at = camera.look_at;
+  const auto* perspective = std::get_if<Perspective>(&camera.projection);
+  const double view =
+      perspective ? perspective->fov_y : std::get<Orthographic>(camera.projection).height;
+  return fmt::format(
+      "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
+      "eye {} {} {}, look at {} {} {}, {} {}",
+      options.width, options.height, options.samples, options.max_depth,
+      PrecisionName(options.precision), options.min_weight,
+      options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
+      eye.z, look_at.x, look_at.y, look_at.z, perspective ? "fov" : "height", view);
 }
 
 // The picture of a frame, and its layers where they have files of their own.
@@ -157,8 +168,9 @@ class FrameWriter {
     PictureSpec spec = WholePicture(options.width, options.height, scene.settings.transfer);
     if (options.crop) spec.window = *options.crop;
     spec.bits = bits.value_or(0);
-    spec.metadata = {
-        {"Scene", scene_path}, {"Camera", frame.camera->name}, {"Settings", SettingsText(options)}};
+    spec.metadata = {{"Scene", scene_path},
+                     {"Camera", frame.camera->name},
+                     {"Settings", SettingsText(options, *frame.camera)}};
     if (HoldsLayers(frame.path)) spec.layers = options.layers;
     Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
     if (!picture) return picture.error();
