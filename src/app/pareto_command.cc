@@ -324,7 +324,7 @@ Status RunPareto(const ParetoRequest& request) {
     if (!paths) return paths.error();
     const Status written = WriteStandardOutput(FrontText(request, points.value()));
     if (!written) return written;
-    for (const std::string& path : paths.value()) Say(request, "wrote " + PrintablePath(path));
+    for (const std::string& path : paths.value()) Say(request, fmt::format("wrote {}", PrintablePath(path)));
   }
   return Done{};
 }

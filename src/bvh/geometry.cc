@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "src/bvh/build_tree.h"
+#include "src/core/has_area.h"
 #include "src/core/parallel.h"
-#include "src/scalar/intersect_triangle.h"
 
 namespace sheaf {
 namespace {
@@ -29,14 +29,6 @@ struct Fields {
 
 bool IsFinite(const float* x, int count) {
   return std::all_of(x, x + count, [](float value) { return std::isfinite(value); });
-}
-
-// As computed from the very floats.
-bool HasArea(const float (&v)[9]) {
-  const auto corner = [&](int i) {
-    return scalar::Vec3<float>{v[3 * i], v[3 * i + 1], v[3 * i + 2]}.To<double>();
-  };
-  return scalar::HasArea({corner(0), corner(1), corner(2)});
 }
 
 std::string Name(std::uint32_t object, const char* kind, std::size_t index) {
@@ -82,13 +74,15 @@ std::size_t GatherMesh(std::span<const float> vertices, std::span<const std::uin
     std::uint32_t never_hit = 0;
     for (std::size_t i = begin; i < end; ++i) {
       float v[9];
+      double exact[3][3];
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::size_t index = indices[3 * i + corner];
         if (index >= vertex_count) return i;
         std::copy_n(vertices.data() + 3 * index, 3, v + 3 * corner);
+        std::copy_n(v + 3 * corner, 3, exact[corner]);
       }
       if (!IsFinite(v, 9)) return i;
-      if (!HasArea(v)) {
+      if (!HasArea(exact)) {
         v[0] = kNever;
         ++never_hit;
       }

@@ -7,8 +7,9 @@
 #include <limits>
 
 #include "simd/roundoffs.h"
+#include "src/core/has_area.h"
 #include "src/core/strict_tan.h"
-#include "src/scalar/intersect_triangle.h"
+#include "src/scalar/vec3.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -158,14 +159,14 @@ class GeometryWriter {
   // A triangle with nothing but its vertices; returns its place.
   std::uint32_t AddVertices(const std::array<Vec3d, 3>& vertices) {
     const std::uint32_t i = compiled_.triangle_count++;
-    Vec3<double> rounded[3];
+    double rounded[3][3];
     for (int vertex = 0; vertex < 3; ++vertex) {
       const auto& v = vertices[static_cast<std::size_t>(vertex)];
-      rounded[vertex] = ToVec3(v).To<Real>().template To<double>();
+      for (int axis = 0; axis < 3; ++axis) rounded[vertex][axis] = static_cast<Real>(v[axis]);
       bounds_.Include(v);
       Put(compiled_.triangle_vertex, vertex, i, v);
     }
-    if (!scalar::HasArea(rounded)) compiled_.triangle_vertex[0][0][i] = kNever;
+    if (!HasArea(rounded)) compiled_.triangle_vertex[0][0][i] = kNever;
     compiled_.triangle_id[i] = NewId(i | kTriangleBit);
     return i;
   }

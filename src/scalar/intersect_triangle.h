@@ -40,12 +40,6 @@ TriangleShear<Real> ShearOf(Vec3<Real> direction) {
   return {kx, ky, kz, direction[kx] / dz, direction[ky] / dz, dz};
 }
 
-// False for three points of a line, which no ray may hit: they have no normal.
-inline bool HasArea(const Vec3<double> (&vertex)[3]) {
-  const Vec3<double> area = Cross(vertex[1] - vertex[0], vertex[2] - vertex[0]);
-  return Dot(area, area) > 0;
-}
-
 template <typename Real>
 struct TriangleHit {
   Real t;

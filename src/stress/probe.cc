@@ -9,6 +9,7 @@
 
 #include "simd/target.h"
 #include "src/bvh/geometry.h"
+#include "src/core/has_area.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf::stress {
@@ -157,11 +158,11 @@ FlatShapes::FlatShapes(const Shapes& shapes) {
     // Without area, or with radius 0, a primitive is NaN to the specification, as the scene
     // compiler makes it.
     const std::size_t last = triangle_id.size();
-    const auto at = [&](int corner) {
-      return scalar::Vec3<double>{vertex[corner][0][last], vertex[corner][1][last],
-                                  vertex[corner][2][last]};
-    };
-    if (!scalar::HasArea({at(0), at(1), at(2)})) vertex[0][0].back() = kNever;
+    double exact[3][3];
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) exact[corner][axis] = vertex[corner][axis][last];
+    }
+    if (!HasArea(exact)) vertex[0][0].back() = kNever;
     triangle_id.push_back(id++);
   }
   for (std::size_t i = 0; i < shapes.spheres.size(); i += 4) {
