@@ -639,6 +639,7 @@ TEST_CASE("merge joins parts of one picture alone") {
   for (const std::string ending : {".png", ".exr"}) {
     render("1" + ending, {"--tile", "1/2"});
     render("2" + ending, {"--tile", "2/2"}, work / "moved/crystal-ball.json");
+    if (ending == ".png") render("2.png", {"--tile", "2/2", "--aov", "albedo"});
     render("camera" + ending, {"--tile", "2/2", "--camera", "up"});
     render("samples" + ending, {"--tile", "2/2", "--spp", "2"});
     render("eye" + ending, {"--tile", "2/2", "--eye", "0,0,9"});
@@ -658,6 +659,10 @@ TEST_CASE("merge joins parts of one picture alone") {
       CHECK(Contains(outcome.err, "sheaf: " + (work / (name + ending)) + says));
     }
   }
+  const Outcome layer =
+      work.Run({"merge", work / "1.png", work / "2.albedo.png", "-o", work / "m.png"});
+  CHECK(layer.code == 2);
+  CHECK(Contains(layer.err, ", layer albedo\", and "));
   const Result<ReadPictureResult> merged = ReadPngFilm(work / "m.png");
   REQUIRE(merged.ok());
   REQUIRE(merged.value().metadata.size() == 3);

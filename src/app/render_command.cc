@@ -179,6 +179,7 @@ class FrameWriter {
       if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
       if (layer == Layer::kHeat) continue;  // known when all tiles are
       PictureSpec beside = spec;
+      beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
       if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
       Result<PictureWriter> created = PictureWriter::Create(path, beside);
       if (!created) return created.error();

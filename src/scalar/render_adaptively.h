@@ -34,11 +34,13 @@ void RenderAdaptively(const FrameView<Real>& frame, const PixelRect& tile,
     return RenderSample(frame, ray, scratch, tally, stop, first);
   };
   for (int y = around.y0; y < around.y1; ++y) {
-    for (int x = around.x0; x < around.x1; ++x) at(x, y).colour = sample(x, y, 0, &at(x, y));
+    for (int x = around.x0; x < around.x1 && !stop.load(std::memory_order_relaxed); ++x) {
+      at(x, y).colour = sample(x, y, 0, &at(x, y));
+    }
   }
   const std::size_t samples = frame.sample_x.size();
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
+    for (int x = tile.x0; x < tile.x1 && !stop.load(std::memory_order_relaxed); ++x) {
       const auto has_edge_to = [&](int dx, int dy) {
         const int nx = x + dx, ny = y + dy;
         const bool exists = nx >= around.x0 && ny >= around.y0 && nx < around.x1 && ny < around.y1;
