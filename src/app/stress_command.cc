@@ -62,7 +62,7 @@ CLI::App* AddStressCommand(CLI::App& app, StressRequest& request) {
   stress->add_option("CASE", request.cases, "The cases; all if absent")->option_text("...");
   stress->add_flag("--list", request.list, "The cases and what is expected of each");
   stress->add_flag("--thorough", request.thorough,
-                   "More and larger: most cases take minutes, all up to hours");
+                   "More and larger: all take a quarter of an hour or more");
   AddParsed(
       *stress, "--replay", request.replay, "RAY", fmt::format("a ray {}", kRayFormat),
       fmt::format("Trace {}, as a failure prints it, in the one case named", kRayFormat).c_str(),
