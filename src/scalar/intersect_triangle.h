@@ -130,7 +130,8 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   // beside a triangle in whose plane it runs.
   if (IsBeside(ax, bx, cx) || IsBeside(ay, by, cy)) return std::nullopt;
 
-  // Exact but for its reach: an edge function is the square of a length.
+  // A power of two rounds nothing. Without it, products of three lengths would leave the range of
+  // float where lengths leave 2^-42 to 2^42.
   const Real scale = ScaleOf(det);
   const Real scaled_t = ((u * scale) * a[kz] + (v * scale) * b[kz]) + (w * scale) * c[kz];
   Real t = (scaled_t / (det * scale)) / dz;
