@@ -108,7 +108,8 @@ Result<Scene> OpenScene(const std::string& path, const SceneOptions& options) {
 
 Status CheckOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const auto& [option, path] = outputs[i];
+    const char* const option = outputs[i].option;
+    const std::string& path = outputs[i].path;
     if (path.empty() || path == "-") continue;
     const auto is_same = [&](const std::string& other) { return IsSameFile(path, other); };
     if (std::any_of(inputs.begin(), inputs.end(), is_same)) {
