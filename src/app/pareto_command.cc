@@ -135,12 +135,13 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
   return point;
 }
 
-// POV-Ray's own antialiasing, where it is installed and knows the projection.
 constexpr char kPovRay[] = "POV-Ray";
+// Its own antialiasing.
 constexpr const char* kPovRaySettings[] = {"-A",        "+A0.3 +R2", "+A0.3 +R3", "+A0.3 +R4",
                                            "+A0.1 +R2", "+A0.1 +R3", "+A0.1 +R4"};
 
-// One round over its settings, in their order.
+// One round over POV-Ray's settings, in their order, where it is installed and knows the
+// projection.
 Result<std::vector<ParetoPoint>> MeasurePovRay(const Scene& scene, const Camera& camera,
                                                const RenderOptions& base, const Film& converged) {
   std::vector<ParetoPoint> points;
@@ -324,7 +325,8 @@ Status RunPareto(const ParetoRequest& request) {
     if (!paths) return paths.error();
     const Status written = WriteStandardOutput(FrontText(request, points.value()));
     if (!written) return written;
-    for (const std::string& path : paths.value()) Say(request, fmt::format("wrote {}", PrintablePath(path)));
+    for (const std::string& path : paths.value())
+      Say(request, fmt::format("wrote {}", PrintablePath(path)));
   }
   return Done{};
 }

@@ -372,6 +372,12 @@ std::uint64_t MeetNoOwnSurface(Report& report, Random& random, const Shapes& sha
     const Vec away = surface.face * surface.offset;
     const Ray up{surface.position + away, out, surface.source};
     const Ray down{surface.position - away, in, surface.source ^ kInsideBit};
+    const auto light_from = [&](LightKind kind, Vec lamp) {
+      const LightData<float> light = Lamp(kind, lamp);
+      const auto incidence = scalar::IncidenceOf(light, surface);
+      if (incidence.reaches) leaving.push_back(scalar::ShadowRay(light, surface, incidence));
+    };
+    scalar::Vec3<double> normal{};  // of a parallelogram
     if (is_sphere) {
       // One of the two goes into the sphere, whose far side it may meet.
       (surface.inside() ? inside : leaving).push_back(up);
@@ -382,27 +388,20 @@ std::uint64_t MeetNoOwnSurface(Report& report, Random& random, const Shapes& sha
       if (surface.inside()) {
         const std::optional<Vec> lamp = LampInside(random, shapes, surface, out);
         if (!lamp) continue;
-        for (const LightKind kind : {LightKind::kPointFromLight, LightKind::kPointFromSurface}) {
-          const LightData<float> light = Lamp(kind, *lamp);
-          const auto incidence = scalar::IncidenceOf(light, surface);
-          if (incidence.reaches) leaving.push_back(scalar::ShadowRay(light, surface, incidence));
-        }
+        light_from(LightKind::kPointFromLight, *lamp);
+        light_from(LightKind::kPointFromSurface, *lamp);
         continue;
       }
     } else {
       // The steepness of the flattest is less than a roundoff of their directions: some of those
       // really go to the other side.
-      const auto normal = ExactNormal(shapes, surface);
+      normal = ExactNormal(shapes, surface);
       if (Dot(normal, out.To<double>()) > 0) leaving.push_back(up);
       if (Dot(normal, in.To<double>()) < 0) leaving.push_back(down);
     }
     for (const LightKind kind : {LightKind::kPointFromLight, LightKind::kPointFromSurface}) {
       const Vec lamp = surface.position + out * (size * std::pow(10.0f, random.In(-1, 1.5f)));
-      const LightData<float> light = Lamp(kind, lamp);
-      const auto incidence = scalar::IncidenceOf(light, surface);
-      const bool is_above = is_sphere || LiesAbove(shapes, ExactNormal(shapes, surface), lamp);
-      if (!incidence.reaches || !is_above) continue;
-      leaving.push_back(scalar::ShadowRay(light, surface, incidence));
+      if (is_sphere || LiesAbove(shapes, normal, lamp)) light_from(kind, lamp);
     }
   }
   ExpectAllMiss(report, shapes, leaving);
