@@ -13,6 +13,8 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "simd/target.h"
 #include "src/bvh/geometry.h"
 

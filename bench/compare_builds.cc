@@ -8,6 +8,8 @@
 
 #include "bench/embree_peer.h"
 #include "bench/interleave.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/bvh/geometry.h"
 #include "src/core/aligned_array.h"

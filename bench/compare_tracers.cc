@@ -12,7 +12,10 @@
 #include <optional>
 
 #include "bench/interleave.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "simd/target.h"
+#include "simd/tree.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf::bench {

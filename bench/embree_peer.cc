@@ -7,6 +7,8 @@
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
+
+#include "simd/streams.h"
 #endif
 
 namespace sheaf::bench {

@@ -13,7 +13,7 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
-#include "simd/layout.h"
+#include "simd/query.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf::bench {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "bench/frame_scenes.h"
+#include "sheaf/render.h"
 #include "simd/target.h"
-#include "src/formats/pov_ray.h"
 #include "src/formats/scene_json.h"
-#include "src/render/render.h"
+#include "src/lab/pov_ray.h"
 
 namespace {
 

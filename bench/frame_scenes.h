@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "src/scene/scene.h"
+#include "sheaf/scene.h"
 
 namespace sheaf::bench {
 

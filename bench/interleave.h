@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "src/core/rank_statistics.h"
+#include "src/lab/rank_statistics.h"
 
 namespace sheaf::bench {
 

@@ -16,10 +16,12 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "simd/target.h"
 #include "src/bvh/geometry.h"
 #include "src/core/parallel.h"
-#include "src/scalar/vec3.h"
+#include "src/core/vec3.h"
 
 #ifdef SHEAF_BENCH_EMBREE
 #include "bench/embree_peer.h"
@@ -27,10 +29,7 @@
 
 namespace sheaf::bench {
 namespace {
-
-using scalar::Dot;
-using scalar::Normalize;
-using Vec = scalar::Vec3<double>;
+using Vec = Vec3<double>;
 
 constexpr std::uint32_t kFrequency = 32;  // 20,480 triangles
 constexpr std::uint32_t kBatch = 1 << 14;

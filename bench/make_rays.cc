@@ -6,16 +6,11 @@
 
 #include "src/core/even_bits.h"
 #include "src/core/strict_tan.h"
-#include "src/scalar/vec3.h"
+#include "src/core/vec3.h"
 
 namespace sheaf::bench {
 namespace {
-
-using scalar::Cross;
-using scalar::Dot;
-using scalar::FromArray;
-using scalar::Normalize;
-using Vec = scalar::Vec3<double>;
+using Vec = Vec3<double>;
 
 // A shadow ray ends this part of its length before the point it is meant for.
 constexpr float kShadowEnd = 1 - 1e-4f;

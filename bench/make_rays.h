@@ -6,7 +6,8 @@
 #include <span>
 
 #include "bench/make_scenes.h"
-#include "simd/layout.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "src/stream/stream.h"
 
 namespace sheaf::bench {

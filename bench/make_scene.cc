@@ -9,8 +9,8 @@
 
 #include "bench/frame_scenes.h"
 #include "src/core/atomic_file.h"
-#include "src/formats/pov_ray.h"
 #include "src/formats/write_scene_json.h"
+#include "src/lab/pov_ray.h"
 
 int main(int argc, char** argv) {
   using sheaf::bench::FrameScene;

@@ -5,15 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "src/scalar/vec3.h"
+#include "src/core/vec3.h"
 
 namespace sheaf::bench {
 namespace {
-
-using scalar::Cross;
-using scalar::Dot;
-using scalar::Normalize;
-using Vec = scalar::Vec3<double>;
+using Vec = Vec3<double>;
 
 // ---- Numbers without libm, which differs between platforms ----
 

@@ -2,7 +2,9 @@
 #ifndef SHEAF_SIMD_BLEND_VERTICES_H_
 #define SHEAF_SIMD_BLEND_VERTICES_H_
 
-#include "simd/layout.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 
 namespace sheaf::simd {
 

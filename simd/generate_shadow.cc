@@ -7,6 +7,7 @@
 #include "simd/compact-inl.h"
 #include "simd/dispatch.h"
 #include "simd/light-inl.h"
+#include "simd/query.h"
 #include "simd/roundoffs.h"
 
 HWY_BEFORE_NAMESPACE();

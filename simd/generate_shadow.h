@@ -2,7 +2,8 @@
 #ifndef SHEAF_SIMD_GENERATE_SHADOW_H_
 #define SHEAF_SIMD_GENERATE_SHADOW_H_
 
-#include "simd/layout.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 
 namespace sheaf::simd {
 

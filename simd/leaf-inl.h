@@ -12,7 +12,10 @@
 #include <bit>
 
 #include "simd/packet-inl.h"
+#include "simd/query.h"
 #include "simd/sphere-inl.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "simd/triangle-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "simd/math-inl.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {

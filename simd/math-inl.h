@@ -14,7 +14,7 @@
 
 #include "hwy/highway.h"
 #include "simd/arithmetic.h"
-#include "simd/layout.h"
+#include "simd/streams.h"
 
 // A lambda in a hot loop: on the target, and inlined, which compilers do not always do unasked.
 #ifndef SHEAF_LAMBDA

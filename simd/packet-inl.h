@@ -10,8 +10,11 @@
 #include <cmath>
 #include <limits>
 
+#include "simd/query.h"
 #include "simd/ray-inl.h"
 #include "simd/sphere-inl.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -39,7 +42,7 @@ struct alignas(kAlignment) Packet {
   // The shear of the triangle test, and ScreenScale where there are spheres: PrepareLeafTerms.
   Real shear_x[kSize], shear_y[kSize];
   Real screen[kSize];
-  // src/scalar/ray_box.h, RayBox; filled by PrepareBoxes.
+  // src/scalar/ray_slabs.h, RaySlabs; filled by PrepareBoxes.
   Real scale[3][kSize], enter[3][kSize], leave[3][kSize];
   Real slack[3][kSize];  // what the origin moves, along the direction, for `enter`
 
@@ -166,7 +169,7 @@ HWY_INLINE hn::Vec<IdLanes<D>> Octants(D d, const Packet<Real>& packet) {
   return hn::Or(sign(0), hn::Or(hn::ShiftLeft<1>(sign(1)), hn::ShiftLeft<2>(sign(2))));
 }
 
-// FitsBoxes and BoxOf of src/scalar/ray_box.h.
+// FitsBoxes and SlabsOf of src/scalar/ray_slabs.h.
 template <typename Real>
 HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
   if (packet.has_boxes) return;

@@ -9,6 +9,7 @@
 
 #include "simd/math-inl.h"
 #include "simd/pow_terms.h"
+#include "simd/streams.h"
 #ifdef SHEAF_FAST
 #include "hwy/contrib/math/math-inl.h"
 #endif

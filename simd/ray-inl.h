@@ -7,6 +7,8 @@
 #endif
 
 #include "simd/math-inl.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {

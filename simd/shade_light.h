@@ -3,7 +3,8 @@
 #define SHEAF_SIMD_SHADE_LIGHT_H_
 
 #include "simd/arithmetic.h"
-#include "simd/layout.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 
 namespace sheaf::SHEAF_SIMD {
 

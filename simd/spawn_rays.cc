@@ -9,6 +9,7 @@
 #include "simd/compact-inl.h"
 #include "simd/dispatch.h"
 #include "simd/material-inl.h"
+#include "simd/query.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -84,7 +85,7 @@ HWY_INLINE void FillBlock(const MaterialData<Real>& material, const SurfaceView<
 
 template <typename Real>
 SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                           std::uint32_t count, const PathView<Real>& parents, Real min_weight,
+                           std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
                            const RayOutput<Real>& reflected_rays,
                            const PathOutput<Real>& reflected_paths,
                            const RayOutput<Real>& refracted_rays,
@@ -93,7 +94,7 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
   const IdLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
   using VI = hn::Vec<IdLanes<Lanes<Real>>>;
-  const V zero = hn::Zero(d), one = hn::Set(d, Real(1)), least = hn::Set(d, min_weight);
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1)), least = hn::Set(d, min_throughput);
   const VI bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
   const bool transmits = (material.needs & kNeedsTransmission) != 0;
   SpawnCounts size{0, 0};
@@ -120,11 +121,12 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const VI source = LoadIds(d, surfaces.source + i);
     const VI parent = LoadIds(d, surfaces.ray + i);
     const VI safe_parent = hn::IfThenElseZero(hn::RebindMask(di, lanes), parent);
-    const auto weight = [&](const Real* HWY_RESTRICT weights)
-                            HWY_ATTR { return weights ? GatherAt(d, weights, safe_parent) : one; };
-    const V weight_r = weight(parents.weight_r);
-    const V weight_g = weight(parents.weight_g);
-    const V weight_b = weight(parents.weight_b);
+    const auto throughput = [&](const Real* HWY_RESTRICT throughputs) HWY_ATTR {
+      return throughputs ? GatherAt(d, throughputs, safe_parent) : one;
+    };
+    const V throughput_r = throughput(parents.throughput_r);
+    const V throughput_g = throughput(parents.throughput_g);
+    const V throughput_b = throughput(parents.throughput_b);
 
     const V cos_i = hn::Load(d, splits.cos_i + in_block);
     V reflectance = zero, cos_t = zero, eta = one;
@@ -162,31 +164,31 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
       CompactStore(d, z, order, rays.direction_z + at);
       CompactStoreIds(d, from, order, rays.source + at);
       CompactStoreIds(d, parent, order, paths.parent + at);
-      CompactStore(d, wr, order, paths.weight_r + at);
-      CompactStore(d, wg, order, paths.weight_g + at);
-      CompactStore(d, wb, order, paths.weight_b + at);
+      CompactStore(d, wr, order, paths.throughput_r + at);
+      CompactStore(d, wg, order, paths.throughput_g + at);
+      CompactStore(d, wb, order, paths.throughput_b + at);
       at += CountLanes(d, kept);
     };
 
-    const auto reflected_weight = [&](V parent_weight, int channel) HWY_ATTR {
+    const auto reflected_throughput = [&](V parent_throughput, int channel) HWY_ATTR {
       const V transmit = hn::Mul(hn::Set(d, material.transmit[channel]), reflectance);
-      return hn::Mul(parent_weight, hn::Add(hn::Set(d, material.reflect[channel]), transmit));
+      return hn::Mul(parent_throughput, hn::Add(hn::Set(d, material.reflect[channel]), transmit));
     };
     const V twice = hn::Mul(hn::Set(d, Real(2)), cos_i);
-    append(reflected_weight(weight_r, 0), reflected_weight(weight_g, 1),
-           reflected_weight(weight_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
+    append(reflected_throughput(throughput_r, 0), reflected_throughput(throughput_g, 1),
+           reflected_throughput(throughput_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
            hn::Add(pz, away_z), hn::Add(dx, hn::Mul(nx, twice)), hn::Add(dy, hn::Mul(ny, twice)),
            hn::Add(dz, hn::Mul(nz, twice)), one, source, reflected_rays, reflected_paths,
            size.reflected);
 
     if (hn::AllTrue(d, is_total)) continue;
-    const auto refracted_weight = [&](V parent_weight, int channel) HWY_ATTR {
+    const auto refracted_throughput = [&](V parent_throughput, int channel) HWY_ATTR {
       const V share = hn::Mul(hn::Set(d, material.transmit[channel]), hn::Sub(one, reflectance));
-      return hn::IfThenZeroElse(is_total, hn::Mul(parent_weight, share));
+      return hn::IfThenZeroElse(is_total, hn::Mul(parent_throughput, share));
     };
     const V bend = hn::Sub(hn::Mul(eta, cos_i), cos_t);
-    append(refracted_weight(weight_r, 0), refracted_weight(weight_g, 1),
-           refracted_weight(weight_b, 2), hn::Sub(px, away_x), hn::Sub(py, away_y),
+    append(refracted_throughput(throughput_r, 0), refracted_throughput(throughput_g, 1),
+           refracted_throughput(throughput_b, 2), hn::Sub(px, away_x), hn::Sub(py, away_y),
            hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(nx, bend)),
            hn::Add(hn::Mul(dy, eta), hn::Mul(ny, bend)),
            hn::Add(hn::Mul(dz, eta), hn::Mul(nz, bend)), hn::Neg(one), hn::Xor(source, bit),
@@ -206,12 +208,12 @@ SHEAF_EXPORT(SpawnRays);
 
 template <typename Real>
 SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t count, const PathView<Real>& parents, Real min_weight,
+                      std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
                       const RayOutput<Real>& reflected_rays,
                       const PathOutput<Real>& reflected_paths,
                       const RayOutput<Real>& refracted_rays,
                       const PathOutput<Real>& refracted_paths) {
-  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, min_weight,
+  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, min_throughput,
                                          reflected_rays, reflected_paths, refracted_rays,
                                          refracted_paths);
 }

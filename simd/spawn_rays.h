@@ -3,19 +3,20 @@
 #define SHEAF_SIMD_SPAWN_RAYS_H_
 
 #include "simd/arithmetic.h"
-#include "simd/layout.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 
 namespace sheaf::SHEAF_SIMD {
 
 // Appends the children of surfaces[0, count), in order and without gaps, from position 0 of each
-// output: rays, the position of the parent in its stream (`paths.parent`) and the weight; leaves
-// paths.pixel alone. `parents` gives the weights of the ray stream; null pointers there stand
-// for 1. A child none of whose weights is over `min_weight`, which is at least 0, is left out.
-// Bits: as sheaf::scalar::Spawn. Reads PaddedCount(count) lanes; writes StreamCapacity(count) at
-// most.
+// output: rays, the position of the parent in its stream (`paths.parent`) and the throughput;
+// leaves paths.pixel alone. `parents` gives the throughputs of the ray stream; null pointers there
+// stand for 1. A child none of whose throughputs is over `min_throughput`, which is at least 0, is
+// left out. Bits: as sheaf::scalar::Spawn. Reads PaddedCount(count) lanes; writes
+// StreamCapacity(count) at most.
 template <typename Real>
 SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t count, const PathView<Real>& parents, Real min_weight,
+                      std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
                       const RayOutput<Real>& reflected_rays,
                       const PathOutput<Real>& reflected_paths,
                       const RayOutput<Real>& refracted_rays,

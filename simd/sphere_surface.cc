@@ -7,6 +7,7 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
+#include "simd/query.h"
 #include "simd/roundoffs.h"
 #include "simd/sphere-inl.h"
 

@@ -3,7 +3,9 @@
 #define SHEAF_SIMD_SPHERE_SURFACE_H_
 
 #include "simd/arithmetic.h"
-#include "simd/layout.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 
 namespace sheaf::SHEAF_SIMD {
 

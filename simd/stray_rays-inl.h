@@ -10,6 +10,7 @@
 #include <bit>
 
 #include "simd/packet-inl.h"
+#include "simd/streams.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {

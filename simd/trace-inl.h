@@ -6,8 +6,11 @@
 #define SHEAF_SIMD_TRACE_INL_H_
 #endif
 
+#include "simd/query.h"
 #include "simd/stray_rays-inl.h"
+#include "simd/streams.h"
 #include "simd/trace_sheet-inl.h"
+#include "simd/tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -46,40 +49,41 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
                            const RayIntervals<Real>& intervals, std::uint32_t count,
                            Coherence coherence, const Finish& finish) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
-  Tile<Real> tile;
+  Frustum<Real> frustum;
   StrayRays strays;
-  // On one lane a tile is one ray, which gains nothing where boxes do not pay.
-  const bool may_be_tile =
+  // On one lane a frustum is one ray, which gains nothing where boxes do not pay.
+  const bool may_be_frustum =
       tree.node_count > 0 && !(tree.skips_boxes && lanes == 1) &&
       (coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin);
   const bool may_be_sheet = coherence == Coherence::kUnknown;
   for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
-    tile.count = 0;
-    for (std::uint32_t i = begin; i < count && tile.count < lanes; i += lanes) {
-      Packet<Real>& packet = tile.packets[tile.count++];
+    frustum.count = 0;
+    for (std::uint32_t i = begin; i < count && frustum.count < lanes; i += lanes) {
+      Packet<Real>& packet = frustum.packets[frustum.count++];
       LoadPacket(rays, intervals, i, count, packet);
       PrepareLeafTerms(tree, packet);
     }
-    if (may_be_tile && PrepareTile(tree, tile)) {
-      TraceTile<kQuery>(tree, tile);
+    if (may_be_frustum && PrepareFrustum(tree, frustum)) {
+      TraceFrustum<kQuery>(tree, frustum);
     } else if (tree.skips_boxes) {
-      for (std::uint32_t k = 0; k < tile.count; ++k) {
-        TraceEveryLeaf<kQuery>(tree, tile.packets[k], OpenLanes(tile.packets[k]));
+      for (std::uint32_t k = 0; k < frustum.count; ++k) {
+        TraceEveryLeaf<kQuery>(tree, frustum.packets[k], OpenLanes(frustum.packets[k]));
       }
-    } else if (may_be_sheet && PrepareSheet(tree, tile)) {
-      TraceSheet<kQuery>(tree, tile);
+    } else if (may_be_sheet && PrepareSheet(tree, frustum)) {
+      TraceSheet<kQuery>(tree, frustum);
     } else {
       if (strays.count + lanes * lanes > StrayRays::kCapacity) {
         TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
       }
-      for (std::uint32_t k = 0; k < tile.count; ++k) {
-        Packet<Real>& packet = tile.packets[k];
+      for (std::uint32_t k = 0; k < frustum.count; ++k) {
+        Packet<Real>& packet = frustum.packets[k];
         const bool is_aside =
             coherence != Coherence::kCoherent && PutAside(packet, begin + k * lanes, strays);
         if (!is_aside) TraceAlone<kQuery>(tree, packet);
       }
     }
-    for (std::uint32_t k = 0; k < tile.count; ++k) finish.Store(tile.packets[k], begin + k * lanes);
+    for (std::uint32_t k = 0; k < frustum.count; ++k)
+      finish.Store(frustum.packets[k], begin + k * lanes);
   }
   TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
 }

@@ -3,7 +3,9 @@
 #define SHEAF_SIMD_TRACE_OCCLUDED_H_
 
 #include "simd/arithmetic.h"
-#include "simd/layout.h"
+#include "simd/query.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 
 namespace sheaf::SHEAF_SIMD {
 

@@ -6,7 +6,9 @@
 #define SHEAF_SIMD_TRACE_PACKET_INL_H_
 #endif
 
-#include "simd/trace_bundle-inl.h"
+#include "simd/query.h"
+#include "simd/trace_beam-inl.h"
+#include "simd/tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -17,9 +19,9 @@ HWY_INLINE std::uint32_t FewRays() {
   return std::max(1u, LaneCount(Lanes<Real>()) / 4);
 }
 
-// The bundle whose lanes are the rays of `lanes` (bits), all of one octant.
+// The beam whose lanes are the rays of `lanes` (bits), all of one octant.
 template <typename Real>
-HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Bundle<Real>& bundle) {
+HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Beam<Real>& beam) {
   const Lanes<Real> d;
   const auto first = std::countr_zero(lanes);
   const auto in_bundle = LanesFromBits(d, lanes);
@@ -28,54 +30,52 @@ HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Bund
   };
   const auto lowest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MinOfLanes(d, v)); };
   const auto highest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MaxOfLanes(d, v)); };
-  bundle.octant = packet.octant[first];
+  beam.octant = packet.octant[first];
   for (int axis = 0; axis < 3; ++axis) {
     const auto scale = hn::Load(d, packet.scale[axis]);
-    hn::Store(scale, d, bundle.enter_scale[axis]);
-    hn::Store(scale, d, bundle.leave_scale[axis]);
-    hn::Store(hn::Load(d, packet.enter[axis]), d, bundle.enter[axis]);
-    hn::Store(hn::Load(d, packet.leave[axis]), d, bundle.leave[axis]);
+    hn::Store(scale, d, beam.enter_scale[axis]);
+    hn::Store(scale, d, beam.leave_scale[axis]);
+    hn::Store(hn::Load(d, packet.enter[axis]), d, beam.enter[axis]);
+    hn::Store(hn::Load(d, packet.leave[axis]), d, beam.leave[axis]);
 
     const auto scales = others_as_first(packet.scale[axis]);
     const auto origins = others_as_first(packet.origin[axis]);
     const auto slack = others_as_first(packet.slack[axis]);
     const auto ahead = hn::Add(origins, slack), behind = hn::Sub(origins, slack);
-    if (bundle.octant >> axis & 1) {
-      bundle.all_enter[axis] = lowest(ahead);
-      bundle.all_leave[axis] = highest(behind);
-      bundle.all_enter_scale[axis] = highest(scales);
-      bundle.all_leave_scale[axis] = lowest(scales);
+    if (beam.octant >> axis & 1) {
+      beam.all_enter[axis] = lowest(ahead);
+      beam.all_leave[axis] = highest(behind);
+      beam.all_enter_scale[axis] = highest(scales);
+      beam.all_leave_scale[axis] = lowest(scales);
     } else {
-      bundle.all_enter[axis] = highest(ahead);
-      bundle.all_leave[axis] = lowest(behind);
-      bundle.all_enter_scale[axis] = lowest(scales);
-      bundle.all_leave_scale[axis] = highest(scales);
+      beam.all_enter[axis] = highest(ahead);
+      beam.all_leave[axis] = lowest(behind);
+      beam.all_enter_scale[axis] = lowest(scales);
+      beam.all_leave_scale[axis] = highest(scales);
     }
   }
   const auto t_min = others_as_first(packet.t_min);
-  hn::Store(t_min, d, bundle.t_min);
-  bundle.all_t_min = lowest(t_min);
+  hn::Store(t_min, d, beam.t_min);
+  beam.all_t_min = lowest(t_min);
 }
 
 template <typename Real>
-HWY_INLINE void UpdateRayEnds(const Packet<Real>& packet, std::uint32_t lanes,
-                              Bundle<Real>& bundle) {
+HWY_INLINE void UpdateRayEnds(const Packet<Real>& packet, std::uint32_t lanes, Beam<Real>& beam) {
   const Lanes<Real> d;
   // Finite, so that a box that is entered at infinity is never met.
   const auto last = hn::Min(hn::Mul(hn::Load(d, packet.t_best), hn::Set(d, Real(kBoxFarFactor))),
                             hn::Set(d, kDefaultTMax<Real>));
-  hn::Store(hn::IfThenElse(LanesFromBits(d, lanes), last, hn::Set(d, kDone<Real>)), d,
-            bundle.t_last);
+  hn::Store(hn::IfThenElse(LanesFromBits(d, lanes), last, hn::Set(d, kDone<Real>)), d, beam.t_last);
 }
 
-// Primitives of a leaf whose boxes the bundle may meet, as bits.
+// Primitives of a leaf whose boxes the beam may meet, as bits.
 template <typename Real>
 HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t leaf,
-                                    const Bundle<Real>& bundle) {
+                                    const Beam<Real>& beam) {
   const Lanes<Real> d;
   const LeafLanes<Real> d8;
   const std::uint32_t n = LeafCount(leaf);
-  const auto t_last = hn::Set(d8, hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, bundle.t_last))));
+  const auto t_last = hn::Set(d8, hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, beam.t_last))));
   const auto growth = hn::Set(d8, Real(kBoxGrowth));
   std::uint32_t met = 0;
   const bool are_triangles = IsTriangleLeaf(leaf);
@@ -97,14 +97,13 @@ HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t le
       return hn::MulAdd(hn::Sub(high(axis), low(axis)), growth, high(axis));
     };
     const auto in = [&](int axis) SHEAF_LAMBDA {
-      return bundle.octant >> axis & 1 ? upper(axis) : lower(axis);
+      return beam.octant >> axis & 1 ? upper(axis) : lower(axis);
     };
     const auto out = [&](int axis) SHEAF_LAMBDA {
-      return bundle.octant >> axis & 1 ? lower(axis) : upper(axis);
+      return beam.octant >> axis & 1 ? lower(axis) : upper(axis);
     };
-    met |=
-        MaskBits(d8, BundleMeets(d8, bundle, in(0), in(1), in(2), out(0), out(1), out(2), t_last))
-        << i;
+    met |= MaskBits(d8, BeamMeets(d8, beam, in(0), in(1), in(2), out(0), out(1), out(2), t_last))
+           << i;
   }
   return met & ((1u << n) - 1);
 }
@@ -114,19 +113,19 @@ template <Query kQuery, typename Real>
 HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& packet,
                                   std::uint32_t lanes, std::uint32_t start) {
   const Lanes<Real> d;
-  Bundle<Real> bundle;
-  BundleRays(packet, lanes, bundle);
-  UpdateRayEnds(packet, lanes, bundle);
-  TraceBundle(tree, bundle, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+  Beam<Real> beam;
+  BundleRays(packet, lanes, beam);
+  UpdateRayEnds(packet, lanes, beam);
+  TraceBeam(tree, beam, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     const std::uint32_t bits = MaskBits(d, met);
     if (static_cast<std::uint32_t>(std::popcount(bits)) <= FewRays<Real>()) {
       TraceRays<kQuery>(tree, packet, bits, child);
     } else if (IsLeaf(child)) {
-      LeafAgainstPacket<kQuery>(d, tree, child, CullLeaf(tree, child, bundle), packet, met);
+      LeafAgainstPacket<kQuery>(d, tree, child, CullLeaf(tree, child, beam), packet, met);
     } else {
       return Visit::kDescend;
     }
-    UpdateRayEnds(packet, lanes, bundle);
+    UpdateRayEnds(packet, lanes, beam);
     return Visit::kDone;
   });
 }

@@ -9,6 +9,9 @@
 
 #include "hwy/cache_control.h"
 #include "simd/leaf-inl.h"
+#include "simd/query.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {

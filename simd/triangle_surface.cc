@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
 #include "simd/math-inl.h"
+#include "simd/query.h"
 #include "simd/roundoffs.h"
 
 HWY_BEFORE_NAMESPACE();

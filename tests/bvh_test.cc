@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "random_scene.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/bvh/validate_tree.h"
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "random_scene.h"
+#include "simd/shading.h"
 #include "src/core/strict_tan.h"
 #include "src/render/sample_pattern.h"
 #include "src/scalar/camera_ray.h"
@@ -20,9 +21,8 @@ namespace sheaf {
 namespace {
 
 using scalar::Ray;
-using scalar::Vec3;
 
-double Length(Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); }
+double Length(Vec3<double> a) { return std::sqrt(Dot(a, a)); }
 double Distance(Vec3<double> a, Vec3<double> b) { return Length(a - b); }
 
 // The right-handed frame of a camera, by GLM.
@@ -81,8 +81,8 @@ TEST_CASE_TEMPLATE("perspective: the centre looks at look_at, corners match the 
       for (const double right : {-1.0, 1.0}) {
         for (const double up : {-1.0, 1.0}) {
           const Ray<double> corner = ray_at(width * (1 + right) / 2, height * (1 - up) / 2);
-          const auto want = scalar::Normalize(
-              frame.forward + frame.right * (right * half * aspect) + frame.up * (up * half));
+          const auto want = Normalize(frame.forward + frame.right * (right * half * aspect) +
+                                      frame.up * (up * half));
           CHECK(Distance(corner.direction, want) < 2 * kTolerance<Real>);
           CHECK(Length(corner.direction) == doctest::Approx(1).epsilon(kTolerance<Real>));
         }

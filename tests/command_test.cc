@@ -23,10 +23,10 @@
 #include <utility>
 #include <vector>
 
-#include "src/core/has_program.h"
-#include "src/core/version.h"
+#include "sheaf/version.h"
 #include "src/formats/pfm.h"
 #include "src/formats/png.h"
+#include "src/lab/has_program.h"
 
 extern char** environ;
 

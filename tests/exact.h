@@ -26,7 +26,7 @@ inline Exact Sqrt(Exact x) {
 
 inline Exact Abs(Exact x) { return x < 0 ? -x : x; }
 
-inline scalar::Vec3<Exact> Unit(scalar::Vec3<Exact> v) { return v * (1 / Sqrt(scalar::Dot(v, v))); }
+inline Vec3<Exact> Unit(Vec3<Exact> v) { return v * (1 / Sqrt(Dot(v, v))); }
 
 // Error in units of the last place of a Real of the exact result's size.
 template <typename Real>
@@ -48,11 +48,11 @@ struct ExactLine {
   Exact l2;        // squared distance of the line from the centre
   Exact f_length;  // of the origin from the centre
 
-  ExactLine(const scalar::Ray<float>& ray, scalar::Vec3<float> center, float radius) {
-    const scalar::Vec3<Exact> f = ray.origin.To<Exact>() - center.To<Exact>();
-    const scalar::Vec3<Exact> d = ray.direction.To<Exact>();
-    const Exact r = radius, f2 = scalar::Dot(f, f);
-    a = scalar::Dot(d, d), b = -scalar::Dot(f, d), c = f2 - r * r;
+  ExactLine(const scalar::Ray<float>& ray, Vec3<float> center, float radius) {
+    const Vec3<Exact> f = ray.origin.To<Exact>() - center.To<Exact>();
+    const Vec3<Exact> d = ray.direction.To<Exact>();
+    const Exact r = radius, f2 = Dot(f, f);
+    a = Dot(d, d), b = -Dot(f, d), c = f2 - r * r;
     l2 = f2 - b * b / a;
     f_length = Sqrt(f2);
   }
@@ -70,16 +70,15 @@ struct ExactLine {
 // A ray and a triangle's plane.
 struct ExactPlaneHit {
   Exact t;
-  scalar::Vec3<Exact> point;
-  Exact u, v;                  // barycentric weights of the second and third vertex
-  scalar::Vec3<Exact> normal;  // unit
-  double cosine;               // of the ray with the normal, >= 0
-  bool is_inside;              // edges included
+  Vec3<Exact> point;
+  Exact u, v;          // barycentric weights of the second and third vertex
+  Vec3<Exact> normal;  // unit
+  double cosine;       // of the ray with the normal, >= 0
+  bool is_inside;      // edges included
 };
 
 inline ExactPlaneHit IntersectExactly(const scalar::Ray<float>& ray,
-                                      const scalar::Vec3<float> (&vertex)[3]) {
-  using scalar::Cross, scalar::Dot, scalar::Vec3;
+                                      const Vec3<float> (&vertex)[3]) {
   const Vec3<Exact> a = vertex[0].To<Exact>();
   const Vec3<Exact> ab = vertex[1].To<Exact>() - a, ac = vertex[2].To<Exact>() - a;
   const Vec3<Exact> n = Cross(ab, ac), normal = Unit(n);

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "same_bits.h"
+#include "sheaf/render.h"
 #include "src/formats/scene_json.h"
 #include "src/formats/write_scene_json.h"
-#include "src/render/render.h"
 
 namespace sheaf {
 namespace {

@@ -14,6 +14,9 @@
 
 #include "bits.h"
 #include "random_scene.h"
+#include "simd/query.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "src/bvh/validate_tree.h"
 #include "src/scalar/trace.h"
 

@@ -13,11 +13,11 @@
 
 #include "random_scene.h"
 #include "same_bits.h"
-#include "src/core/has_program.h"
+#include "sheaf/render.h"
 #include "src/formats/picture.h"
 #include "src/formats/png.h"
 #include "src/formats/scene_json.h"
-#include "src/render/render.h"
+#include "src/lab/has_program.h"
 #include "targets.h"
 
 namespace sheaf {
@@ -327,7 +327,7 @@ TEST_CASE("a least weight drops rays, and never more light than it says") {
   options.max_depth = 7;
   RenderStats all, some;
   const Film exact = RenderOrFail(scene, scene.cameras[0], options, &all);
-  options.min_weight = 0.02;
+  options.min_throughput = 0.02;
   const Film film = RenderOrFail(scene, scene.cameras[0], options, &some);
   CheckSameBits(scene, scene.cameras[0], options);
   CHECK(some.rays.traced() < all.rays.traced() * 9 / 10);

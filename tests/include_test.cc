@@ -1,5 +1,7 @@
-// Includes point downward: app -> stress -> render -> {scalar, bvh, stream, formats} -> scene ->
-// core -> simd/layout.h, and kernels include only simd/. A header carries the guard of its path.
+// Includes point downward: app -> lab -> render -> {scalar, bvh, formats} -> stream -> scene ->
+// core
+// -> simd's plain headers, and kernels include only simd/. The public face, src/sheaf, lies below
+// all and includes itself alone, as <sheaf/...>. A header carries the guard of its path.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -69,7 +71,7 @@ std::string LayerOf(const std::string& path) {
 const std::map<std::string, std::set<std::string>>& Below() {
   static const std::set<std::string> kCore = {"src/core"};
   static const std::set<std::string> kScene = {"src/core", "src/scene"};
-  static const std::set<std::string> kBvh = {"src/core", "src/scene", "src/stream"};
+  static const std::set<std::string> kStream = {"src/core", "src/scene", "src/stream"};
   static const std::set<std::string> kMiddle = {"src/core", "src/scene",  "src/scalar",
                                                 "src/bvh",  "src/stream", "src/formats"};
   static const std::set<std::string> kRender = [] {
@@ -77,22 +79,26 @@ const std::map<std::string, std::set<std::string>>& Below() {
     layers.insert("src/render");
     return layers;
   }();
-  static const std::set<std::string> kStress = [] {
+  static const std::set<std::string> kLab = [] {
     std::set<std::string> layers = kRender;
-    layers.insert("src/stress");
+    layers.insert("src/lab");
     return layers;
   }();
   static const std::map<std::string, std::set<std::string>> kBelow = {
-      {"src/core", {}},        {"src/scene", kCore},    {"src/scalar", kScene},
-      {"src/bvh", kBvh},       {"src/stream", kScene},  {"src/formats", kScene},
-      {"src/render", kMiddle}, {"src/stress", kRender}, {"src/app", kStress}};
+      {"src/sheaf", {}},       {"src/core", {}},        {"src/scene", kCore},
+      {"src/stream", kScene},  {"src/bvh", kStream},    {"src/scalar", kStream},
+      {"src/formats", kScene}, {"src/render", kMiddle}, {"src/lab", kRender},
+      {"src/app", kLab}};
   return kBelow;
 }
 
 bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   if (EndsWith(header, "-inl.h")) return false;
-  if (header == "simd/layout.h" || layer == "src/render") return true;
-  if (layer == "src/app" || layer == "src/stress") return header == "simd/target.h";
+  static const std::set<std::string> kPlain = {"simd/streams.h", "simd/query.h", "simd/tree.h",
+                                               "simd/shading.h"};
+  if (layer == "src/sheaf") return false;
+  if (kPlain.count(header) || layer == "src/render") return true;
+  if (layer == "src/app" || layer == "src/lab") return header == "simd/target.h";
   if (layer == "src/bvh") {
     return header == "simd/trace_closest.h" || header == "simd/trace_occluded.h";
   }
@@ -123,6 +129,12 @@ void CheckInclude(const Texts& texts, const std::string& path, const Include& in
     if (texts.count(include.path)) violate("headers of the tree are quoted");
     return;
   }
+  if (StartsWith(include.path, "sheaf/")) {  // the public face, for all but the kernels
+    if (!texts.count("src/" + include.path)) return violate("no such public header");
+    if (layer == "simd") violate("kernels include only simd/");
+    return;
+  }
+  if (StartsWith(include.path, "src/sheaf/")) return violate("public headers are sheaf/...");
   if (!texts.count(include.path)) return violate("no such path from the root");
   if (layer == "simd") {
     if (LayerOf(include.path) != "simd") violate("kernels include only simd/");
@@ -189,8 +201,6 @@ Texts ReadTree(const fs::path& root) {
   for (const char* directory : {"src", "simd", "tests", "bench"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / directory)) {
       std::string path = fs::relative(entry.path(), root).generic_string();
-      // The build makes a header from its .in.
-      if (EndsWith(path, ".h.in")) path.resize(path.size() - 3);
       if (!entry.is_regular_file() || !(EndsWith(path, ".h") || EndsWith(path, ".cc"))) continue;
       std::ifstream file(entry.path(), std::ios::binary);
       texts[path] = std::string(std::istreambuf_iterator<char>(file), {});
@@ -203,7 +213,7 @@ TEST_CASE("the tree keeps to the direction of includes, to its guards and to pla
   const Texts texts = ReadTree(SHEAF_SOURCE_DIR);
   REQUIRE(texts.size() > 50);
   REQUIRE(texts.count("src/scalar/trace.h"));
-  REQUIRE(texts.count("simd/layout.h"));
+  REQUIRE(texts.count("simd/streams.h"));
   for (const std::string& violation : Violations(texts)) FAIL_CHECK(violation);
   // Every directory under src/ has its place.
   for (const auto& entry : texts) {  // clang 14 captures no structured binding
@@ -215,7 +225,8 @@ TEST_CASE("the tree keeps to the direction of includes, to its guards and to pla
     std::set<std::string> seen;
     return ReachesHighway(texts, path, seen);
   };
-  for (const char* plain : {"simd/layout.h", "simd/pow_terms.h", "simd/roundoffs.h"}) {
+  for (const char* plain : {"simd/streams.h", "simd/query.h", "simd/tree.h", "simd/shading.h",
+                            "simd/pow_terms.h", "simd/roundoffs.h"}) {
     REQUIRE(texts.count(plain));
     CHECK_FALSE(reaches(plain));
   }
@@ -245,18 +256,20 @@ Texts SoundTree() {
   const auto add = [&](const std::string& path, const std::string& body) {
     texts[path] = EndsWith(path, ".h") ? Header(path, body) : body;
   };
-  add("simd/layout.h", "#include <cstddef>\n");
+  add("simd/streams.h", "#include <cstddef>\n");
   add("simd/roundoffs.h", "");
   add("simd/target.h", "#include <string>\n");
-  add("simd/trace_closest.h", "#include \"simd/layout.h\"\n");
+  add("simd/trace_closest.h", "#include \"simd/streams.h\"\n");
   add("simd/dispatch.h", "#include \"hwy/highway.h\"\n");
-  add("simd/trace.cc", "#include \"simd/dispatch.h\"\n#include \"simd/layout.h\"\n");
-  add("src/core/error.h", "#include \"simd/layout.h\"\n");
+  add("simd/trace.cc", "#include \"simd/dispatch.h\"\n#include \"simd/streams.h\"\n");
+  add("src/sheaf/error.h", "");
+  add("src/sheaf/film.h", "#include \"sheaf/error.h\"\n");
+  add("src/core/error.h", "#include \"simd/streams.h\"\n#include \"sheaf/error.h\"\n");
   add("src/scene/scene.h", "#include \"src/core/error.h\"\n");
   add("src/stream/stream.h", "#include \"src/core/error.h\"\n");
   add("src/bvh/geometry.h",
       "#include \"src/stream/stream.h\"\n#include \"simd/trace_closest.h\"\n");
-  add("src/scalar/ray.h", "#include \"simd/roundoffs.h\"\n#include \"simd/layout.h\"\n");
+  add("src/scalar/ray.h", "#include \"simd/roundoffs.h\"\n#include \"simd/streams.h\"\n");
   add("src/formats/png.h", "#include \"src/scene/scene.h\"\n");
   add("src/render/render.h", "#include \"src/scalar/ray.h\"\n#include \"simd/target.h\"\n");
   add("src/app/main.cc", "#include \"src/render/render.h\"\n#include \"simd/target.h\"\n");
@@ -273,8 +286,13 @@ TEST_CASE("each kind of violation is found") {
   // One more include in one file of the sound tree: exactly that is reported.
   const std::pair<const char*, const char*> wrong[] = {
       {"src/core/error.h", "\"src/scene/scene.h\""},      // upward
+      {"src/sheaf/film.h", "\"src/core/error.h\""},       // the face looks inside
+      {"src/sheaf/film.h", "\"simd/streams.h\""},         // the same
+      {"src/core/error.h", "\"src/sheaf/error.h\""},      // not as users spell it
+      {"src/core/error.h", "\"sheaf/none.h\""},           // no such header
+      {"simd/trace.cc", "\"sheaf/error.h\""},             // a kernel looks up
       {"src/scene/scene.h", "\"src/formats/png.h\""},     // upward
-      {"src/scalar/ray.h", "\"src/stream/stream.h\""},    // sideways
+      {"src/scalar/ray.h", "\"src/formats/png.h\""},      // sideways
       {"src/formats/png.h", "\"src/render/render.h\""},   // upward
       {"src/bvh/geometry.h", "\"src/scalar/ray.h\""},     // sideways
       {"src/stream/stream.h", "\"src/bvh/geometry.h\""},  // sideways

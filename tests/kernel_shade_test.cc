@@ -9,10 +9,13 @@
 #include "simd/face_light.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
+#include "simd/query.h"
 #include "simd/shade_ambient.h"
 #include "simd/shade_light.h"
+#include "simd/shading.h"
 #include "simd/spawn_rays.h"
 #include "simd/sphere_surface.h"
+#include "simd/streams.h"
 #include "simd/triangle_surface.h"
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/shadow_ray.h"
@@ -24,7 +27,6 @@ namespace {
 
 using scalar::Ray;
 using scalar::Surface;
-using scalar::Vec3;
 using sheaf::SameBits;
 
 template <typename Real>
@@ -96,13 +98,13 @@ std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count,
     s.position = Vec3<double>{p.x, p.y, p.z}.To<Real>();
     s.direction = RandomUnit(random).To<Real>();
     s.normal = RandomUnit(random).To<Real>();
-    if (scalar::Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
+    if (Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
     if (random() % 8 == 0) s.normal = -s.direction;
     s.face = s.normal;
     if ((needs & kNeedsNormals) && random() % 4 != 0) {
       s.face = RandomUnit(random).To<Real>();
-      if (scalar::Dot(s.face, s.direction) > 0) s.face = -s.face;
-      if (scalar::Dot(s.face, s.normal) < 0) s.normal = -s.normal;
+      if (Dot(s.face, s.direction) > 0) s.face = -s.face;
+      if (Dot(s.face, s.normal) < 0) s.normal = -s.normal;
     }
     if (needs & kNeedsTint) {
       const Vec3d tint = UniformPoint(random, 0, 1);
@@ -332,9 +334,9 @@ void CheckChildren(const std::vector<scalar::Path<Real>>& want,
                      rays.direction_z[i]));
     REQUIRE(want[i].ray.source == rays.source[i]);
     REQUIRE(parent[i] == paths.parent[i]);
-    REQUIRE(SameBits(want[i].weight[0], paths.weight_r[i]));
-    REQUIRE(SameBits(want[i].weight[1], paths.weight_g[i]));
-    REQUIRE(SameBits(want[i].weight[2], paths.weight_b[i]));
+    REQUIRE(SameBits(want[i].throughput[0], paths.throughput_r[i]));
+    REQUIRE(SameBits(want[i].throughput[1], paths.throughput_g[i]));
+    REQUIRE(SameBits(want[i].throughput[2], paths.throughput_b[i]));
   }
 }
 
@@ -353,15 +355,15 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
       reflected.Allocate(count), refracted.Allocate(count);
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto weights = parents.output();
-        weights.weight_r[i] = static_cast<Real>(Uniform(random, 0, 1));
-        weights.weight_g[i] = static_cast<Real>(Uniform(random, 0, 1));
-        weights.weight_b[i] = 0;
+        weights.throughput_r[i] = static_cast<Real>(Uniform(random, 0, 1));
+        weights.throughput_g[i] = static_cast<Real>(Uniform(random, 0, 1));
+        weights.throughput_b[i] = 0;
       }
       auto view = parents.view();
-      if (round % 2) view.weight_r = view.weight_g = view.weight_b = nullptr;
-      const Real min_weight = round % 3 ? Real(0) : Real(0.25);
+      if (round % 2) view.throughput_r = view.throughput_g = view.throughput_b = nullptr;
+      const Real min_throughput = round % 3 ? Real(0) : Real(0.25);
       const SpawnCounts counts =
-          simd::SpawnRays(material, stream.view(), count, view, min_weight, reflected.output(),
+          simd::SpawnRays(material, stream.view(), count, view, min_throughput, reflected.output(),
                           reflected_paths.output(), refracted.output(), refracted_paths.output());
 
       std::vector<scalar::Path<Real>> want_reflected, want_refracted;
@@ -369,13 +371,13 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
       for (std::uint32_t i = 0; i < count; ++i) {
         Real weight[3] = {1, 1, 1};
         if (round % 2 == 0)
-          weight[0] = view.weight_r[i], weight[1] = view.weight_g[i], weight[2] = 0;
+          weight[0] = view.throughput_r[i], weight[1] = view.throughput_g[i], weight[2] = 0;
         const auto spawned = scalar::Spawn(material, surfaces[i], weight);
-        if (spawned.reflected.counts(min_weight)) {
+        if (spawned.reflected.counts(min_throughput)) {
           want_reflected.push_back(spawned.reflected);
           parent_of_reflected.push_back(i);
         }
-        if (spawned.refracted.counts(min_weight)) {
+        if (spawned.refracted.counts(min_throughput)) {
           want_refracted.push_back(spawned.refracted);
           parent_of_refracted.push_back(i);
         }

@@ -6,8 +6,11 @@
 
 #include "bits.h"
 #include "random_scene.h"
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/trace_tree.h"
 #include "targets.h"
@@ -19,8 +22,8 @@ constexpr Coherence kHints[] = {Coherence::kUnknown, Coherence::kCommonOrigin, C
                                 Coherence::kIncoherent};
 
 template <typename Real>
-scalar::Vec3<Real> As(const Vec3d& v) {
-  return scalar::Vec3<double>{v.x, v.y, v.z}.To<Real>();
+Vec3<Real> As(const Vec3d& v) {
+  return Vec3<double>{v.x, v.y, v.z}.To<Real>();
 }
 
 // Rays in the arrays that a caller would hand in, `offset` elements into them.
@@ -418,11 +421,10 @@ TEST_CASE_TEMPLATE("rays near tangency at any distance trace as the scalar speci
     }
     std::vector<scalar::Ray<Real>> rays;
     for (int i = 0; i < 1000; ++i) {
-      const auto axis = scalar::Normalize(scalar::Vec3<double>{
-          Uniform(random, -1, 1), Uniform(random, -1, 1), Uniform(random, -1, 1)});
-      const auto side =
-          scalar::Normalize(scalar::Cross(axis, scalar::Vec3<double>{0.3, -0.5, 0.8}));
-      const scalar::Vec3<double> center{sphere.center.x, sphere.center.y, sphere.center.z};
+      const auto axis = Normalize(
+          Vec3<double>{Uniform(random, -1, 1), Uniform(random, -1, 1), Uniform(random, -1, 1)});
+      const auto side = Normalize(Cross(axis, Vec3<double>{0.3, -0.5, 0.8}));
+      const Vec3<double> center{sphere.center.x, sphere.center.y, sphere.center.z};
       const auto origin = center + axis * (1 + distance);
       const auto target = center + side * (1 + Uniform(random, -1e-6, 1e-6));
       rays.push_back({origin.To<Real>(), (target - origin).template To<Real>()});

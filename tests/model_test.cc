@@ -13,12 +13,13 @@
 
 #include "random_scene.h"
 #include "same_bits.h"
+#include "simd/shading.h"
 #include "src/formats/nff.h"
 #include "src/formats/ply.h"
 #include "src/formats/png.h"
-#include "src/formats/pov_ray.h"
 #include "src/formats/read_scene.h"
 #include "src/formats/triangulate.h"
+#include "src/lab/pov_ray.h"
 #include "src/scalar/spawn.h"
 
 #ifdef SHEAF_HAS_ASSIMP
@@ -815,20 +816,20 @@ TEST_CASE("a shading normal never lights the back of a face, nor sends rays thro
       const float u = static_cast<float>(Uniform(random, 0, 0.5));
       const scalar::Hit<float> hit{1, i, u, 0.5f - u};
       const auto surface = scalar::TriangleSurface(ray, hit, compiled.geometry().triangles, i);
-      CHECK(scalar::Dot(surface.face, ray.direction) <= 1e-6f);
-      CHECK(scalar::Dot(surface.face, surface.normal) >= -1e-6f);
+      CHECK(Dot(surface.face, ray.direction) <= 1e-6f);
+      CHECK(Dot(surface.face, surface.normal) >= -1e-6f);
       LightData<float> sun{};
       sun.kind = LightKind::kDirectional;
       const auto l = RandomUnit(random).To<float>();
       for (int c = 0; c < 3; ++c) sun.vector[c] = l[c];
       const auto incidence = scalar::IncidenceOf(sun, surface);
-      if (scalar::Dot(surface.face, l) <= 0) CHECK_FALSE(incidence.reaches);
+      if (Dot(surface.face, l) <= 0) CHECK_FALSE(incidence.reaches);
       turned += incidence.n_dot_l > 0 && !incidence.reaches;
       const float weight[3] = {1, 1, 1};
       const auto spawned = scalar::Spawn(glass, surface, weight);
-      CHECK(scalar::Dot(spawned.reflected.ray.direction, surface.face) >= -1e-6f);
+      CHECK(Dot(spawned.reflected.ray.direction, surface.face) >= -1e-6f);
       if (spawned.refracted.counts()) {
-        CHECK(scalar::Dot(spawned.refracted.ray.direction, surface.face) <= 1e-6f);
+        CHECK(Dot(spawned.refracted.ray.direction, surface.face) <= 1e-6f);
       }
     }
   }

@@ -9,7 +9,10 @@
 #include "exact.h"
 #include "random_scene.h"
 #include "simd/kernels.h"
+#include "simd/query.h"
 #include "simd/roundoffs.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 #include "simd/triangle_surface.h"
 #include "src/bvh/build_tree.h"
 #include "targets.h"
@@ -18,7 +21,6 @@ namespace sheaf {
 namespace {
 
 using scalar::Ray;
-using scalar::Vec3;
 
 struct Errors {
   double worst = 0, sum = 0;
@@ -62,7 +64,7 @@ struct Measured {
   }
 };
 
-double Length(Vec3<double> v) { return std::sqrt(scalar::Dot(v, v)); }
+double Length(Vec3<double> v) { return std::sqrt(Dot(v, v)); }
 
 // Of two unit vectors, as rounded.
 template <typename Real>
@@ -138,7 +140,7 @@ void MeasureSpheres(const Kernels<Real>& kernels, Measured& measured) {
       const double low[] = {0, 0.99, 0, 1 - 1e-5}, high[] = {1, 1, 1, 1 + 1e-5};
       const double miss = radius * Uniform(random, low[i % 4], high[i % 4]);
       const Vec3<double> axis = RandomUnit(random);
-      const Vec3<double> side = scalar::Normalize(scalar::Cross(axis, RandomUnit(random)));
+      const Vec3<double> side = Normalize(Cross(axis, RandomUnit(random)));
       const Vec3<double> origin = center.To<double>() + axis * (radius * distance);
       const Vec3<double> direction = center.To<double>() + side * miss - origin;
       rays.push_back({origin.To<float>(), (direction * Uniform(random, 0.1, 2)).To<float>()});
@@ -165,7 +167,7 @@ void MeasureSpheres(const Kernels<Real>& kernels, Measured& measured) {
                                   traced.hits.view(), batch, kNeedsAll, surfaces);
         },
         [&](std::uint32_t i, Vec3<Real> normal) {
-          if (scalar::Dot(normals[i], normals[i]) == 0) return;  // a miss that counted as a hit
+          if (Dot(normals[i], normals[i]) == 0) return;  // a miss that counted as a hit
           measured.sphere_normal.Add(AngleTo(normal, normals[i]));
         });
   }
@@ -184,7 +186,7 @@ void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
     for (auto& p : v) p = (centre + ToVec3(UniformPoint(random, -size, size))).To<float>();
     const Vec3<double> ab = (v[1] - v[0]).To<double>(), ac = (v[2] - v[0]).To<double>();
     const double longest = std::max({Length(ab), Length(ac), Length(ac - ab)});
-    if (Length(scalar::Cross(ab, ac)) < 0.1 * longest * longest) continue;
+    if (Length(Cross(ab, ac)) < 0.1 * longest * longest) continue;
     std::vector<Ray<float>> rays;
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       const double away = std::exp2(Uniform(random, -2, 8));
@@ -257,10 +259,10 @@ void MeasureInterfaces(const Kernels<Real>& kernels, Measured& measured) {
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       const Vec3<double> n = RandomUnit(random);
       Vec3<double> d = RandomUnit(random);
-      if (scalar::Dot(n, d) > 0) d = -d;
+      if (Dot(n, d) > 0) d = -d;
       if (inside && i % 2) {
         const double sin = (1 + Uniform(random, -1e-6, 1e-6)) / static_cast<double>(glass.ior);
-        const Vec3<double> side = scalar::Normalize(scalar::Cross(n, d));
+        const Vec3<double> side = Normalize(Cross(n, d));
         d = side * sin - n * std::sqrt(1 - sin * sin);
       }
       normals.push_back(n.To<float>()), directions.push_back(d.To<float>());
@@ -271,7 +273,7 @@ void MeasureInterfaces(const Kernels<Real>& kernels, Measured& measured) {
     reflected.Allocate(kRaysEach), refracted.Allocate(kRaysEach), parents.Allocate(kRaysEach);
     reflected_paths.Allocate(kRaysEach), refracted_paths.Allocate(kRaysEach);
     auto none = parents.view();
-    none.weight_r = none.weight_g = none.weight_b = nullptr;
+    none.throughput_r = none.throughput_g = none.throughput_b = nullptr;
     const SpawnCounts counts =
         kernels.spawn_rays(glass, surfaces.view(), kRaysEach, none, 0, reflected.output(),
                            reflected_paths.output(), refracted.output(), refracted_paths.output());
@@ -281,12 +283,12 @@ void MeasureInterfaces(const Kernels<Real>& kernels, Measured& measured) {
     }
     std::vector<Exact> reflectance(kRaysEach, 0);
     for (std::uint32_t i = 0; i < counts.reflected; ++i) {
-      reflectance[reflected_paths.view().parent[i]] = reflected_paths.view().weight_r[i];
+      reflectance[reflected_paths.view().parent[i]] = reflected_paths.view().throughput_r[i];
     }
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       const auto n = normals[i].To<Exact>(), d = directions[i].To<Exact>();
       const Exact eta = inside ? Exact(glass.ior) : 1 / Exact(glass.ior);
-      const Exact c = -scalar::Dot(n, d), k = 1 - eta * eta * (1 - c * c);
+      const Exact c = -Dot(n, d), k = 1 - eta * eta * (1 - c * c);
       const bool passes = refracted_of[i] >= 0;
       measured.reflections_misjudged += passes != (k > 0);
       if (!passes || k < 1e-3) continue;
@@ -328,16 +330,15 @@ void MeasureHighlights(const Kernels<Real>& kernels, Measured& measured) {
     std::vector<double> exact;
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       const Vec3<double> d = RandomUnit(random);
-      const Vec3<double> half = scalar::Normalize(to_light.To<double>() - d);
+      const Vec3<double> half = Normalize(to_light.To<double>() - d);
       // Where there is something to be seen.
       const double spread = 3 / std::sqrt(static_cast<double>(shininess));
       const Vec3<float> n =
-          scalar::Normalize(half + RandomUnit(random) * Uniform(random, 0, spread)).To<float>();
+          Normalize(half + RandomUnit(random) * Uniform(random, 0, spread)).To<float>();
       const Vec3<float> direction = d.To<float>();
       PutSurface(out, i, n, direction, 0);
       colours.output().r[i] = colours.output().g[i] = colours.output().b[i] = 0;
-      const Exact cosine =
-          scalar::Dot(n.To<Exact>(), Unit(to_light.To<Exact>() - direction.To<Exact>()));
+      const Exact cosine = Dot(n.To<Exact>(), Unit(to_light.To<Exact>() - direction.To<Exact>()));
       const long double base = std::clamp(static_cast<long double>(cosine), 0.0L, 1.0L);
       exact.push_back(static_cast<double>(std::pow(base, static_cast<long double>(shininess))));
       lit[i] = 1;

@@ -1,5 +1,5 @@
 // Distances between floats and between pictures.
-#include "src/render/picture_metrics.h"
+#include "src/lab/picture_metrics.h"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "src/formats/scene_json.h"
-#include "src/render/flip.h"
+#include "src/lab/flip.h"
 #include "src/render/object_at.h"
 
 namespace sheaf {

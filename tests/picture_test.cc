@@ -23,8 +23,8 @@
 #include <utility>
 #include <vector>
 
+#include "sheaf/version.h"
 #include "src/core/atomic_file.h"
-#include "src/core/version.h"
 #include "src/formats/pfm.h"
 #include "src/formats/png.h"
 

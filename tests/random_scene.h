@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "simd/query.h"
 #include "src/render/compile_scene.h"
 #include "src/scalar/ray.h"
 #include "src/stream/stream.h"
@@ -27,10 +28,10 @@ inline Vec3d UniformPoint(Random& random, double low, double high) {
   return {x, y, Uniform(random, low, high)};
 }
 
-inline scalar::Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
+inline Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-inline scalar::Vec3<double> RandomUnit(Random& random) {
-  return scalar::Normalize(ToVec3(UniformPoint(random, -1, 1)));
+inline Vec3<double> RandomUnit(Random& random) {
+  return Normalize(ToVec3(UniformPoint(random, -1, 1)));
 }
 
 // `count` objects around the origin: spheres, some far and small or huge, and triangles, some
@@ -85,7 +86,7 @@ scalar::Ray<Real> RandomRay(Random& random, std::uint32_t primitive_count) {
   ray.origin = {real(origin.x), real(origin.y), real(origin.z)};
   ray.direction = {real(towards.x - origin.x), real(towards.y - origin.y),
                    real(towards.z - origin.z)};
-  if (random() % 4 == 0) ray.direction = scalar::Normalize(ray.direction);
+  if (random() % 4 == 0) ray.direction = Normalize(ray.direction);
   if (random() % 8 == 0) ray.direction.x = random() % 2 ? Real(0) : -Real(0);
   if (random() % 8 == 0) ray.direction.y = 0;
   if (random() % 16 == 0) ray.direction = ray.direction * real(random() % 2 ? 1e-20 : 1e18);

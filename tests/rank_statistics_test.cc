@@ -1,4 +1,4 @@
-#include "src/core/rank_statistics.h"
+#include "src/lab/rank_statistics.h"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "src/render/render.h"
+#include "sheaf/render.h"
 #include "targets.h"
 
 namespace sheaf {

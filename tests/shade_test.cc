@@ -10,6 +10,9 @@
 
 #include "exact.h"
 #include "random_scene.h"
+#include "simd/query.h"
+#include "simd/shading.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/render_pixel.h"
 
@@ -18,14 +21,13 @@ namespace {
 
 using scalar::Ray;
 using scalar::Surface;
-using scalar::Vec3;
 
 Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }
-double Length(Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); }
+double Length(Vec3<double> a) { return std::sqrt(Dot(a, a)); }
 // A unit vector on the side of `normal`.
 Vec3<double> RandomAbout(Random& random, Vec3<double> normal) {
   const Vec3<double> v = RandomUnit(random);
-  return scalar::Dot(v, normal) < 0 ? -v : v;
+  return Dot(v, normal) < 0 ? -v : v;
 }
 bool IsBlack(Vec3<float> c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
@@ -135,9 +137,9 @@ TEST_CASE("the highlight is (n.h)^shininess in the light's colour") {
     light.kind = LightKind::kDirectional;
     const Vec3<float> towards = l.To<float>();
     for (int axis = 0; axis < 3; ++axis) light.vector[axis] = towards[axis];
-    const double n_dot_h = scalar::Dot(n, scalar::Normalize(l + eye));
+    const double n_dot_h = Dot(n, Normalize(l + eye));
     const double highlight = 0.75 * std::pow(std::min(n_dot_h, 1.0), shininess);
-    const double diffuse = 0.25 * scalar::Dot(n, l);
+    const double diffuse = 0.25 * Dot(n, l);
     const Vec3<float> got = Lit(light, material, surface);
     // The power multiplies the roundoffs of n.h.
     const double tolerance = 1e-6 * (1 + highlight * shininess);
@@ -330,22 +332,22 @@ TEST_CASE("mirror law, Snell's law, energy and sides, for random directions") {
     const auto ior = static_cast<float>(Uniform(random, 0.5, 2.5));
     const auto spawned = scalar::Spawn(Glass(ior), Interface(n, d, is_inside), kFull);
     const Vec3<double> mirrored = spawned.reflected.ray.direction.To<double>();
-    REQUIRE(Length(mirrored - (d - n * (2 * scalar::Dot(n, d)))) < 1e-6);
-    REQUIRE(spawned.reflected.weight[0] >= 0);
-    REQUIRE(spawned.reflected.weight[0] <= 1);
-    REQUIRE(spawned.reflected.weight[0] + spawned.refracted.weight[0] ==
+    REQUIRE(Length(mirrored - (d - n * (2 * Dot(n, d)))) < 1e-6);
+    REQUIRE(spawned.reflected.throughput[0] >= 0);
+    REQUIRE(spawned.reflected.throughput[0] <= 1);
+    REQUIRE(spawned.reflected.throughput[0] + spawned.refracted.throughput[0] ==
             doctest::Approx(1).epsilon(1e-6));
     if (!spawned.refracted.counts()) {
       ++totals;
-      REQUIRE(spawned.reflected.weight[0] == 1);
+      REQUIRE(spawned.reflected.throughput[0] == 1);
       continue;
     }
     const Vec3<double> t = spawned.refracted.ray.direction.To<double>();
     REQUIRE(std::abs(Length(t) - 1) < 1e-6);
     // n1 sin i = n2 sin t, in the plane of incidence: the vectors are the same.
     const double n1 = is_inside ? ior : 1.0, n2 = is_inside ? 1.0 : ior;
-    REQUIRE(Length(scalar::Cross(n, d) * n1 - scalar::Cross(n, t) * n2) < 1e-6 * (n1 + n2));
-    REQUIRE(scalar::Dot(n, t) < 1e-6);
+    REQUIRE(Length(Cross(n, d) * n1 - Cross(n, t) * n2) < 1e-6 * (n1 + n2));
+    REQUIRE(Dot(n, t) < 1e-6);
     // The refracted ray changes sides, the reflected one does not.
     REQUIRE(spawned.refracted.ray.source == (is_inside ? 0 : kInsideBit));
     REQUIRE(spawned.reflected.ray.source == (is_inside ? kInsideBit : 0));
@@ -358,17 +360,17 @@ TEST_CASE("a refracted ray turned round comes back, with the same reflectance") 
   int reversed = 0;
   for (int i = 0; i < 50000; ++i) {
     const Vec3<double> n = RandomUnit(random), d = -RandomAbout(random, n);
-    if (scalar::Dot(n, d) > -0.1) continue;  // where cos i is small, its square has lost its bits
+    if (Dot(n, d) > -0.1) continue;  // where cos i is small, its square has lost its bits
     const bool is_inside = i % 2;
     const MaterialData<float> glass = Glass(static_cast<float>(Uniform(random, 0.6, 2.5)));
     const auto there = scalar::Spawn(glass, Interface(n, d, is_inside), kFull);
     if (!there.refracted.counts()) continue;
     const Vec3<double> t = there.refracted.ray.direction.To<double>();
-    if (scalar::Dot(n, t) > -0.1) continue;
+    if (Dot(n, t) > -0.1) continue;
     const auto back = scalar::Spawn(glass, Interface(-n, -t, !is_inside), kFull);
     REQUIRE(back.refracted.counts());
     REQUIRE(Length(back.refracted.ray.direction.To<double>() + d) < 1e-5);
-    REQUIRE(std::abs(back.reflected.weight[0] - there.reflected.weight[0]) < 1e-4);
+    REQUIRE(std::abs(back.reflected.throughput[0] - there.reflected.throughput[0]) < 1e-4);
     ++reversed;
   }
   CHECK(reversed > 20000);
@@ -380,7 +382,7 @@ TEST_CASE("ior 1 lets everything through unbent") {
     const Vec3<double> n = RandomUnit(random), d = -RandomAbout(random, n);
     const auto spawned = scalar::Spawn(Glass(1), Interface(n, d, i % 2), kFull);
     REQUIRE_FALSE(spawned.reflected.counts());
-    REQUIRE(spawned.refracted.weight[0] == 1);
+    REQUIRE(spawned.refracted.throughput[0] == 1);
     REQUIRE(Length(spawned.refracted.ray.direction.To<double>() - d) < 2e-7);
   }
 }
@@ -418,7 +420,7 @@ Ray<float> RayAt(Random& random, const Placement& at, bool from_inside) {
       at.center + RandomUnit(random) * (at.size * (from_inside ? 0.3 : Uniform(random, 1.5, 30)));
   const Vec3<double> target = at.center + RandomUnit(random) * (at.size * Uniform(random, 0, 1));
   const Vec3<float> start = origin.To<float>();
-  return {start, scalar::Normalize(target - start.To<double>()).To<float>()};
+  return {start, Normalize(target - start.To<double>()).To<float>()};
 }
 
 // Positive outside the sphere.
@@ -426,7 +428,7 @@ Exact SphereSide(const SphereArrays<float>& spheres, Vec3<float> p) {
   const Vec3<float> center{spheres.center_x[0], spheres.center_y[0], spheres.center_z[0]};
   const Vec3<Exact> f = p.To<Exact>() - center.To<Exact>();
   const Exact r = spheres.radius[0];
-  return scalar::Dot(f, f) - r * r;
+  return Dot(f, f) - r * r;
 }
 
 // A direction on the normal's side, a third of them grazing.
@@ -434,8 +436,8 @@ Vec3<float> AwayFrom(Random& random, Vec3<float> normal, int i) {
   const Vec3<double> n = normal.To<double>();
   const Vec3<double> v = RandomAbout(random, n);
   if (i % 3 != 0) return v.To<float>();
-  const Vec3<double> along = scalar::Normalize(v - n * scalar::Dot(v, n));
-  return scalar::Normalize(along + n * std::exp2(Uniform(random, -30, -3))).To<float>();
+  const Vec3<double> along = Normalize(v - n * Dot(v, n));
+  return Normalize(along + n * std::exp2(Uniform(random, -30, -3))).To<float>();
 }
 
 TEST_CASE("rays that a sphere spawns start on their side and do not hit it again") {
@@ -482,14 +484,14 @@ Exact TriangleSide(const TriangleArrays<float>& triangles, std::uint32_t i, Vec3
   const Vec3<Exact> a = scalar::TriangleVertex(triangles, i, 0).To<Exact>();
   const Vec3<Exact> b = scalar::TriangleVertex(triangles, i, 1).To<Exact>();
   const Vec3<Exact> c = scalar::TriangleVertex(triangles, i, 2).To<Exact>();
-  return scalar::Dot(scalar::Cross(b - a, c - a), p.To<Exact>() - a);
+  return Dot(Cross(b - a, c - a), p.To<Exact>() - a);
 }
 
 // A square of two triangles, turned any way; its corners are rounded to float first.
 Quad RandomQuad(Random& random, const Placement& at) {
   const Vec3<double> n = RandomUnit(random);
-  const Vec3<double> e = scalar::Normalize(scalar::Cross(n, RandomUnit(random))) * at.size;
-  const Vec3<double> f = scalar::Cross(n, e);
+  const Vec3<double> e = Normalize(Cross(n, RandomUnit(random))) * at.size;
+  const Vec3<double> f = Cross(n, e);
   const auto corner = [&](double a, double b) {
     return ToGlm((at.center + e * a + f * b).To<float>().To<double>());
   };
@@ -519,7 +521,7 @@ TEST_CASE("rays that a triangle spawns start on their side; a coplanar neighbour
     if (surface.offset > 1e-3 * at.size) continue;
     ++hits;
     const Vec3<float> direction = AwayFrom(random, surface.normal, i);
-    if (scalar::Dot(direction, surface.normal) <= 0) continue;
+    if (Dot(direction, surface.normal) <= 0) continue;
     REQUIRE_FALSE(scalar::TraceOccluded(frame.geometry,
                                         {surface.position + away, direction, surface.source}));
     REQUIRE_FALSE(scalar::TraceOccluded(

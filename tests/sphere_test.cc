@@ -11,13 +11,14 @@
 
 #include "exact.h"
 #include "random_scene.h"
+#include "simd/query.h"
+#include "simd/tree.h"
 #include "src/scalar/trace.h"
 
 namespace sheaf {
 namespace {
 
 using scalar::Ray;
-using scalar::Vec3;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -47,7 +48,7 @@ struct OneSphere {
 // A ray from `distance` radii away that passes the centre at `miss` radii.
 Ray<float> RayPast(Random& random, const OneSphere& sphere, double distance, double miss) {
   const Vec3<double> axis = RandomUnit(random);
-  const Vec3<double> side = scalar::Normalize(scalar::Cross(axis, RandomUnit(random)));
+  const Vec3<double> side = Normalize(Cross(axis, RandomUnit(random)));
   const double r = sphere.radius;
   const Vec3<double> center = sphere.center.To<double>();
   const Vec3<double> origin = center + axis * (r * distance);
@@ -267,8 +268,8 @@ TEST_CASE("the source is excluded by its id, whatever rounding says") {
     const Vec3<float> point =
         (sphere.center.To<double>() + out * static_cast<double>(sphere.radius)).To<float>();
     Vec3<double> towards = RandomUnit(random);
-    if (scalar::Dot(towards, out) < 0) towards = -towards;
-    if (i % 4 == 0) towards = scalar::Cross(out, towards);  // grazing
+    if (Dot(towards, out) < 0) towards = -towards;
+    if (i % 4 == 0) towards = Cross(out, towards);  // grazing
     const Vec3<float> outward = towards.To<float>();
     REQUIRE_FALSE(sphere.Hits({point, outward, id}));
     // Another primitive's ray sees it whole.

@@ -14,7 +14,9 @@
 
 #include "exact.h"
 #include "random_scene.h"
+#include "simd/query.h"
 #include "simd/trace_closest.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/trace.h"
 #include "targets.h"
@@ -23,7 +25,6 @@ namespace sheaf {
 namespace {
 
 using scalar::Ray;
-using scalar::Vec3;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -367,22 +368,19 @@ Mesh Icosphere(int levels, double radius) {
   const double phi = std::numbers::phi;
   for (const double a : {-1.0, 1.0}) {
     for (const double b : {-phi, phi}) {
-      unit.push_back(scalar::Normalize(Vec3<double>{0, a, b}));
-      unit.push_back(scalar::Normalize(Vec3<double>{a, b, 0}));
-      unit.push_back(scalar::Normalize(Vec3<double>{b, 0, a}));
+      unit.push_back(Normalize(Vec3<double>{0, a, b}));
+      unit.push_back(Normalize(Vec3<double>{a, b, 0}));
+      unit.push_back(Normalize(Vec3<double>{b, 0, a}));
     }
   }
   Mesh mesh;
   // The faces of the icosahedron are the triples at the shortest distance, turned outward.
-  const auto is_edge = [&](std::size_t i, std::size_t j) {
-    return scalar::Dot(unit[i], unit[j]) > 0.4;
-  };
+  const auto is_edge = [&](std::size_t i, std::size_t j) { return Dot(unit[i], unit[j]) > 0.4; };
   for (std::uint32_t i = 0; i < 12; ++i) {
     for (std::uint32_t j = i + 1; j < 12; ++j) {
       for (std::uint32_t k = j + 1; k < 12; ++k) {
         if (!is_edge(i, j) || !is_edge(j, k) || !is_edge(i, k)) continue;
-        const bool outward =
-            scalar::Dot(scalar::Cross(unit[j] - unit[i], unit[k] - unit[i]), unit[i]) > 0;
+        const bool outward = Dot(Cross(unit[j] - unit[i], unit[k] - unit[i]), unit[i]) > 0;
         mesh.triangles.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});
       }
     }
@@ -393,7 +391,7 @@ Mesh Icosphere(int levels, double radius) {
     const auto middle = [&](std::uint32_t i, std::uint32_t j) {
       const auto [found, is_new] =
           middles.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(unit.size()));
-      if (is_new) unit.push_back(scalar::Normalize(unit[i] + unit[j]));
+      if (is_new) unit.push_back(Normalize(unit[i] + unit[j]));
       return found->second;
     };
     std::vector<std::array<std::uint32_t, 3>> finer;
@@ -421,7 +419,7 @@ std::vector<Ray<float>> RaysAtEdges(Random& random, const Mesh& mesh, std::uint3
     const double extent = is_inside ? 0.5 : 3;
     Vec3<float> origin{grid(extent), grid(extent), grid(extent)};
     if (rays.size() % 16 == 0) origin = {0, 0, 0};
-    if (!is_inside && scalar::Dot(origin, origin) < 2) continue;
+    if (!is_inside && Dot(origin, origin) < 2) continue;
     const auto& triangle = mesh.triangles[random() % mesh.triangles.size()];
     const Vec3<float> a = mesh.vertices[triangle[0]], b = mesh.vertices[triangle[1]];
     const std::uint64_t kind = random() % 3;
@@ -429,7 +427,7 @@ std::vector<Ray<float>> RaysAtEdges(Random& random, const Mesh& mesh, std::uint3
                         : kind == 1 ? 0.5f
                                     : static_cast<float>(Uniform(random, 0, 1));
     const Vec3<float> target = a + (b - a) * along, direction = target - origin;
-    const float facing = scalar::Dot(scalar::Normalize(direction), scalar::Normalize(target));
+    const float facing = Dot(Normalize(direction), Normalize(target));
     if (!is_inside && facing > -0.4f) continue;
     rays.push_back({origin, direction});
   }
@@ -518,8 +516,7 @@ TEST_CASE("t is within 8 ULP times reach over path, of no needle and away from g
     Vec3<float> v[3];
     for (auto& p : v) p = (centre + ToVec3(UniformPoint(random, -size, size))).To<float>();
     const Vec3<float> origin =
-        (centre + scalar::Normalize(ToVec3(UniformPoint(random, -1, 1))) * (size * away))
-            .To<float>();
+        (centre + Normalize(ToVec3(UniformPoint(random, -1, 1))) * (size * away)).To<float>();
     double w[3] = {Uniform(random, 0, 1), Uniform(random, 0, 1), Uniform(random, 0, 1)};
     const double sum = w[0] + w[1] + w[2];
     const Vec3<double> target = v[0].To<double>() * (w[0] / sum) +
@@ -528,10 +525,10 @@ TEST_CASE("t is within 8 ULP times reach over path, of no needle and away from g
     const auto hit = Intersect(ray, v[0], v[1], v[2]);
     const ExactPlaneHit exact = IntersectExactly(ray, v);
     if (!hit || exact.cosine < 0.5) continue;
-    const auto length = [](Vec3<double> a) { return std::sqrt(scalar::Dot(a, a)); };
+    const auto length = [](Vec3<double> a) { return std::sqrt(Dot(a, a)); };
     const Vec3<double> ab = (v[1] - v[0]).To<double>(), ac = (v[2] - v[0]).To<double>();
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});
-    if (length(scalar::Cross(ab, ac)) < 0.1 * longest * longest) continue;
+    if (length(Cross(ab, ac)) < 0.1 * longest * longest) continue;
     ++hits;
     const double path = length(exact.point.To<double>() - origin.To<double>());
     double reach = path;

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "sheaf/render.h"
+#include "sheaf/version.h"
 #include "simd/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
@@ -17,10 +19,9 @@
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/core/atomic_file.h"
-#include "src/core/rank_statistics.h"
-#include "src/core/version.h"
+#include "src/core/build_info.h"
 #include "src/formats/printable.h"
-#include "src/render/render.h"
+#include "src/lab/rank_statistics.h"
 
 namespace sheaf {
 namespace {
@@ -331,9 +332,10 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
   RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);
   options.timing = Timing::kOn;
 
-  Json report = {{"sheaf", kVersion},      {"scene", request.scene},   {"camera", camera.name},
-                 {"width", options.width}, {"height", options.height}, {"samples", options.samples},
-                 {"compiler", kCompiler},  {"build_type", kBuildType}};
+  Json report = {{"sheaf", kVersion},          {"scene", request.scene},
+                 {"camera", camera.name},      {"width", options.width},
+                 {"height", options.height},   {"samples", options.samples},
+                 {"compiler", CompilerName()}, {"build_type", BuildTypeName()}};
   if (!request.baseline.empty()) {
     const Status same = CheckSameFrame(request.baseline, report, baseline.value());
     if (!same) return same.error();

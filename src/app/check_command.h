@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/error.h"
 #include "src/app/exit_code.h"
 #include "src/app/open_scene.h"
-#include "src/core/error.h"
 
 namespace CLI {
 class App;

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "sheaf/error.h"
+#include "sheaf/render.h"
+#include "sheaf/scene.h"
 #include "src/app/parse_options.h"
-#include "src/core/error.h"
-#include "src/render/render.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

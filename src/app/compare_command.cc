@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "sheaf/render.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
 #include "src/app/json_text.h"
@@ -16,9 +17,8 @@
 #include "src/app/standard_output.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
+#include "src/lab/picture_metrics.h"
 #include "src/render/object_at.h"
-#include "src/render/picture_metrics.h"
-#include "src/render/render.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {

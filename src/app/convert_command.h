@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "sheaf/error.h"
 #include "src/app/open_scene.h"
-#include "src/core/error.h"
 
 namespace CLI {
 class App;

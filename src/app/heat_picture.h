@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "src/core/error.h"
-#include "src/render/render.h"
+#include "sheaf/error.h"
+#include "sheaf/render.h"
 
 namespace sheaf {
 

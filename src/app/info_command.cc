@@ -10,13 +10,14 @@
 #include <thread>
 #include <variant>
 
+#include "sheaf/scene.h"
+#include "sheaf/version.h"
 #include "simd/target.h"
 #include "src/app/json_text.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
-#include "src/core/version.h"
+#include "src/core/build_info.h"
 #include "src/formats/printable.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 namespace {
@@ -39,7 +40,8 @@ Json MachineJson() {
   std::vector<std::string> usable = simd::UsableTargets();
   usable.push_back("scalar");
   return {
-      {"sheaf", {{"version", kVersion}, {"compiler", kCompiler}, {"build_type", kBuildType}}},
+      {"sheaf",
+       {{"version", kVersion}, {"compiler", CompilerName()}, {"build_type", BuildTypeName()}}},
       {"processor", {{"model", ProcessorModel()}, {"cores", std::thread::hardware_concurrency()}}},
       {"targets",
        {{"compiled", simd::CompiledTargets()},

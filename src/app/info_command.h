@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "sheaf/error.h"
 #include "src/app/open_scene.h"
-#include "src/core/error.h"
 
 namespace CLI {
 class App;

@@ -2,7 +2,7 @@
 #ifndef SHEAF_APP_INTERRUPT_H_
 #define SHEAF_APP_INTERRUPT_H_
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 
 namespace sheaf {
 

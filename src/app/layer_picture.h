@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "src/scene/film.h"
-#include "src/scene/scene.h"
+#include "sheaf/film.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

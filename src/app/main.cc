@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sheaf/version.h"
 #include "src/app/bench_command.h"
 #include "src/app/check_command.h"
 #include "src/app/compare_command.h"
@@ -25,7 +26,6 @@
 #include "src/app/render_command.h"
 #include "src/app/standard_output.h"
 #include "src/app/stress_command.h"
-#include "src/core/version.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 
 namespace CLI {
 class App;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "src/core/error.h"
-#include "src/scene/scene.h"
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
 
 namespace CLI {
 class App;

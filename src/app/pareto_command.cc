@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "sheaf/render.h"
 #include "simd/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
@@ -17,11 +18,10 @@
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/core/atomic_file.h"
-#include "src/core/rank_statistics.h"
-#include "src/formats/pov_ray.h"
 #include "src/formats/printable.h"
-#include "src/render/picture_metrics.h"
-#include "src/render/render.h"
+#include "src/lab/picture_metrics.h"
+#include "src/lab/pov_ray.h"
+#include "src/lab/rank_statistics.h"
 
 namespace sheaf {
 namespace {
@@ -41,7 +41,8 @@ struct Setting {
   std::string Name() const {
     std::string name = fmt::format("{}, {} spp", PrecisionName(options.precision), options.samples);
     if (options.contrast) name += fmt::format(", adaptive {:g}", *options.contrast);
-    if (options.min_weight > 0) name += fmt::format(", min-weight {:g}", options.min_weight);
+    if (options.min_throughput > 0)
+      name += fmt::format(", min-weight {:g}", options.min_throughput);
     return name + fmt::format(", depth {}", options.max_depth);
   }
 };
@@ -60,7 +61,7 @@ std::vector<Setting> ListSettings(const RenderOptions& base) {
     for (const int depth : depths) {
       for (const double weight : kWeights) {
         setting.options.max_depth = depth;
-        setting.options.min_weight = weight;
+        setting.options.min_throughput = weight;
         setting.options.contrast.reset();
         settings.push_back(setting);
         for (const double contrast : kContrasts) {

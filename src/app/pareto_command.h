@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/error.h"
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
-#include "src/core/error.h"
 
 namespace CLI {
 class App;

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "sheaf/version.h"
 #include "src/app/json_text.h"
 #include "src/core/atomic_file.h"
-#include "src/core/has_program.h"
-#include "src/core/version.h"
+#include "src/lab/has_program.h"
 
 namespace sheaf {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "src/core/error.h"
-#include "src/render/render.h"
+#include "sheaf/error.h"
+#include "sheaf/render.h"
 
 namespace sheaf {
 

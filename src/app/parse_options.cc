@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "src/render/render.h"
-#include "src/scene/scene.h"
+#include "sheaf/render.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

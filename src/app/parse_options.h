@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "src/scene/film.h"
+#include "sheaf/film.h"
 
 namespace sheaf {
 

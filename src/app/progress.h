@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "src/render/render.h"
+#include "sheaf/render.h"
 
 namespace sheaf {
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "sheaf/scene.h"
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/heat_picture.h"
@@ -19,7 +20,6 @@
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 namespace {
@@ -97,7 +97,7 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   RenderOptions options = FrameOptions(settings, request.size, request.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
   options.contrast = request.contrast;
-  options.min_weight = request.min_weight.value_or(0);
+  options.min_throughput = request.min_throughput.value_or(0);
   options.crop = request.crop;
   options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
   options.precision = PrecisionOf(request.precision);
@@ -154,7 +154,7 @@ std::string SettingsText(const RenderOptions& options, const Camera& camera) {
       "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
       "eye {} {} {}, look at {} {} {}, {} {}",
       options.width, options.height, options.samples, options.max_depth,
-      PrecisionName(options.precision), options.min_weight,
+      PrecisionName(options.precision), options.min_throughput,
       options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
       eye.z, look_at.x, look_at.y, look_at.z, perspective ? "fov" : "height", view);
 }
@@ -284,7 +284,7 @@ CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
              "A ray deeper than this is black; primary rays have depth 0");
   AddShare(*render, "--adaptive", request.contrast, "T",
            "All samples only where neighbours differ by more than T; else one");
-  AddShare(*render, "--min-weight", request.min_weight, "W",
+  AddShare(*render, "--min-weight", request.min_throughput, "W",
            "Rays that add at most this part of what they see are not traced");
   AddParsed(*render, "--crop", request.crop, "x0,y0,x1,y1",
             "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",

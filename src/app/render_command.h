@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/error.h"
+#include "sheaf/render.h"
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
-#include "src/core/error.h"
-#include "src/render/render.h"
 
 namespace CLI {
 class App;
@@ -32,7 +32,7 @@ struct RenderRequest {
   std::string output;
   std::optional<PixelSize> size;
   std::optional<int> samples, max_depth;
-  std::optional<double> contrast, min_weight;
+  std::optional<double> contrast, min_throughput;
   std::string target = "auto";
   std::string precision = "strict";
   std::optional<int> threads, bits;

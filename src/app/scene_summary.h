@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/scene.h"
 #include "src/scene/bounds.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 
 namespace sheaf {
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sheaf/version.h"
 #include "src/app/json_text.h"
-#include "src/core/version.h"
 
 namespace sheaf {
 namespace {
@@ -65,7 +65,7 @@ Json FrameJson(const FrameRecord& frame) {
   };
   if (options.engine != Engine::kScalar) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
-  if (options.min_weight > 0) json["min_weight"] = options.min_weight;
+  if (options.min_throughput > 0) json["min_throughput"] = options.min_throughput;
   if (options.crop) {
     json["crop"] = {options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1};
   }

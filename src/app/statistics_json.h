@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/render/render.h"
+#include "sheaf/render.h"
 
 namespace sheaf {
 

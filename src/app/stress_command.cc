@@ -11,7 +11,7 @@
 #include "src/app/standard_output.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
-#include "src/stress/stress.h"
+#include "src/lab/stress.h"
 
 namespace sheaf {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/error.h"
 #include "src/app/exit_code.h"
-#include "src/core/error.h"
-#include "src/stress/stress.h"
+#include "src/lab/stress.h"
 
 namespace CLI {
 class App;

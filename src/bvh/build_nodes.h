@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "simd/layout.h"
+#include "simd/tree.h"
 #include "src/bvh/primitive_box.h"
 
 namespace sheaf::bvh {

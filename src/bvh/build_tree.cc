@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "src/bvh/build_nodes.h"
 #include "src/bvh/flatten_tree.h"
 #include "src/bvh/primitive_box.h"

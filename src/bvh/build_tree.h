@@ -2,8 +2,9 @@
 #ifndef SHEAF_BVH_BUILD_TREE_H_
 #define SHEAF_BVH_BUILD_TREE_H_
 
+#include "sheaf/error.h"
+#include "simd/tree.h"
 #include "src/bvh/tree.h"
-#include "src/core/error.h"
 
 namespace sheaf {
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "simd/tree.h"
+
 namespace sheaf::bvh {
 namespace {
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "simd/tree.h"
+
 namespace sheaf::bvh {
 namespace {
 

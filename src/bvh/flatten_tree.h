@@ -2,6 +2,7 @@
 #ifndef SHEAF_BVH_FLATTEN_TREE_H_
 #define SHEAF_BVH_FLATTEN_TREE_H_
 
+#include "simd/tree.h"
 #include "src/bvh/build_nodes.h"
 #include "src/bvh/tree.h"
 

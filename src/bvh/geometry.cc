@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/core/has_area.h"
 #include "src/core/parallel.h"

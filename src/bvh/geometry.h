@@ -12,9 +12,11 @@
 #include <span>
 #include <vector>
 
-#include "simd/layout.h"
+#include "sheaf/error.h"
+#include "simd/query.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "src/bvh/tree.h"
-#include "src/core/error.h"
 
 namespace sheaf {
 
@@ -84,7 +86,7 @@ struct HitArrays {
   float* t = nullptr;                  // t_max where the ray misses
   std::uint32_t* primitive = nullptr;  // kNoPrimitive where the ray misses
   std::uint32_t* object = nullptr;     // likewise
-  float* u = nullptr;                  // see HitFields in layout.h
+  float* u = nullptr;                  // see HitFields of simd/streams.h
   float* v = nullptr;
 };
 

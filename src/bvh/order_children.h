@@ -2,7 +2,7 @@
 #ifndef SHEAF_BVH_ORDER_CHILDREN_H_
 #define SHEAF_BVH_ORDER_CHILDREN_H_
 
-#include "simd/layout.h"
+#include "simd/tree.h"
 
 namespace sheaf::bvh {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "simd/layout.h"
+#include "sheaf/error.h"
+#include "simd/tree.h"
 #include "src/bvh/float4.h"
-#include "src/core/error.h"
 
 namespace sheaf::bvh {
 

@@ -2,6 +2,8 @@
 // place, the rest through a padded copy.
 #include <algorithm>
 
+#include "simd/query.h"
+#include "simd/streams.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
 #include "src/bvh/geometry.h"

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "simd/layout.h"
+#include "simd/tree.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf {

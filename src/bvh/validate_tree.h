@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "simd/layout.h"
+#include "simd/tree.h"
 
 namespace sheaf {
 

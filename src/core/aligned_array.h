@@ -8,7 +8,7 @@
 #include <new>
 #include <type_traits>
 
-#include "simd/layout.h"
+#include "simd/streams.h"
 
 namespace sheaf {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 
 namespace sheaf {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 #include "src/formats/picture_spec.h"
 
 namespace sheaf {

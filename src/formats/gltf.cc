@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "simd/tree.h"
 #include "src/formats/image.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 #include "src/formats/read_scene.h"
 
 namespace sheaf {

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
 #include "src/formats/read_scene.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

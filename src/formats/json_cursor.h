@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 #include "src/formats/json_tree.h"
 
 namespace sheaf {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 
 namespace sheaf {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
 #include "src/formats/read_scene.h"
 
 namespace sheaf {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "sheaf/scene.h"
 #include "src/formats/read_file.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/error.h"
+#include "sheaf/film.h"
 #include "src/core/atomic_file.h"
-#include "src/core/error.h"
-#include "src/scene/film.h"
 
 namespace sheaf {
 

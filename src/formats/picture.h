@@ -9,13 +9,13 @@
 #include <variant>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
+#include "sheaf/film.h"
+#include "sheaf/scene.h"
 #include "src/formats/exr.h"
 #include "src/formats/pfm.h"
 #include "src/formats/picture_spec.h"
 #include "src/formats/png.h"
-#include "src/scene/film.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "src/scene/film.h"
-#include "src/scene/scene.h"
+#include "sheaf/film.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

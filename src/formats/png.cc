@@ -13,8 +13,8 @@
 #include <optional>
 #include <utility>
 
+#include "sheaf/version.h"
 #include "src/core/atomic_file.h"
-#include "src/core/version.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
 #include "src/formats/picture_spec.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

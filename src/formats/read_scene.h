@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "src/core/error.h"
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
 #include "src/scene/bounds.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "src/core/error.h"
-#include "src/scene/scene.h"
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

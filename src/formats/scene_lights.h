@@ -2,8 +2,8 @@
 #ifndef SHEAF_FORMATS_SCENE_LIGHTS_H_
 #define SHEAF_FORMATS_SCENE_LIGHTS_H_
 
+#include "sheaf/scene.h"
 #include "src/formats/json_cursor.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "sheaf/scene.h"
 #include "src/formats/json_cursor.h"
-#include "src/scene/scene.h"
 
 namespace sheaf {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "src/scene/scene.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <future>
 
-#include "src/core/error.h"
-#include "src/scene/film.h"
+#include "sheaf/error.h"
+#include "sheaf/film.h"
 
 namespace sheaf {
 

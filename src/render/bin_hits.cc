@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "simd/query.h"
+
 namespace sheaf {
 
 void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "simd/layout.h"
+#include "simd/streams.h"
 #include "src/core/aligned_array.h"
-#include "src/scalar/frame_view.h"
+#include "src/stream/frame_view.h"
 
 namespace sheaf {
 

@@ -7,15 +7,16 @@
 #include <limits>
 
 #include "simd/roundoffs.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
+#include "simd/tree.h"
 #include "src/core/has_area.h"
 #include "src/core/strict_tan.h"
-#include "src/scalar/vec3.h"
+#include "src/core/vec3.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
-
-using scalar::Vec3;
 
 template <typename Real>
 void Store(const glm::dvec3& from, Real (&to)[3]) {
@@ -27,11 +28,11 @@ Vec3<double> ToVec3(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 ToGlm(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 
 // GLM's own normalize multiplies by an inverse square root, whose bits are its business.
-glm::dvec3 Unit(const glm::dvec3& v) { return ToGlm(scalar::Normalize(ToVec3(v))); }
+glm::dvec3 Unit(const glm::dvec3& v) { return ToGlm(Normalize(ToVec3(v))); }
 glm::dvec3 CrossOf(const glm::dvec3& a, const glm::dvec3& b) {
-  return ToGlm(scalar::Cross(ToVec3(a), ToVec3(b)));
+  return ToGlm(Cross(ToVec3(a), ToVec3(b)));
 }
-double LengthOf(const glm::dvec3& v) { return std::sqrt(scalar::Dot(ToVec3(v), ToVec3(v))); }
+double LengthOf(const glm::dvec3& v) { return std::sqrt(Dot(ToVec3(v), ToVec3(v))); }
 
 struct Bounds {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
@@ -228,14 +229,28 @@ std::vector<Real> DecodeTable(Transfer transfer) {
   return table;
 }
 
+TextureWrap WrapOf(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::kRepeat:
+      return TextureWrap::kRepeat;
+    case Wrap::kMirror:
+      return TextureWrap::kMirror;
+    case Wrap::kClamp:
+      break;
+  }
+  return TextureWrap::kClamp;
+}
+
 template <typename Real>
 void CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
   std::vector<Real>& decode = compiled.decode[static_cast<int>(texture.transfer)];
   if (decode.empty()) decode = DecodeTable<Real>(texture.transfer);
   const Image& image = *texture.image;
   compiled.images.push_back(texture.image);
-  compiled.textures.push_back({image.texels.data(), image.width, image.height, decode.data(),
-                               texture.wrap_u, texture.wrap_v, texture.filter});
+  compiled.textures.push_back(
+      {image.texels.data(), image.width, image.height, decode.data(), WrapOf(texture.wrap_u),
+       WrapOf(texture.wrap_v),
+       texture.filter == Filter::kNearest ? TextureFilter::kNearest : TextureFilter::kLinear});
 }
 
 // The cosines of a spot light's two angles differ by at least this, as in KHR_lights_punctual.

@@ -5,10 +5,12 @@
 #include <memory>
 #include <vector>
 
+#include "sheaf/error.h"
+#include "sheaf/scene.h"
+#include "simd/shading.h"
+#include "simd/tree.h"
 #include "src/core/aligned_array.h"
-#include "src/core/error.h"
-#include "src/scalar/frame_view.h"
-#include "src/scene/scene.h"
+#include "src/stream/frame_view.h"
 
 namespace sheaf {
 

@@ -1,5 +1,7 @@
 #include "src/render/object_at.h"
 
+#include "simd/query.h"
+#include "simd/shading.h"
 #include "src/render/compile_scene.h"
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/trace.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "src/scene/scene.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

@@ -1,4 +1,4 @@
-#include "src/render/render.h"
+#include "sheaf/render.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "simd/query.h"
+#include "simd/shading.h"
 #include "simd/target.h"
+#include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/core/parallel.h"
 #include "src/render/band_queue.h"
@@ -39,8 +42,7 @@ class ScalarTileRenderer {
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
     const bool has_layers = HasFirstHitLayers(film);
-    const auto write = [&](int x, int y, const scalar::Vec3<Real>& colour,
-                           const scalar::FirstHit<Real>& first) {
+    const auto write = [&](int x, int y, const Vec3<Real>& colour, const FirstHit<Real>& first) {
       if (has_layers) StoreLayers(film, x - film_x, y - film_y, LayersOf(first));
       float* rgb = film.pixel(x - film_x, y - film_y);
       rgb[0] = static_cast<float>(colour.x);
@@ -53,7 +55,7 @@ class ScalarTileRenderer {
     }
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1 && !stop_.load(std::memory_order_relaxed); ++x) {
-        scalar::FirstHit<Real> first;
+        FirstHit<Real> first;
         const auto colour = scalar::RenderPixel(frame_, x, y, scratch_, tally_, stop_,
                                                 has_layers ? &first : nullptr);
         write(x, y, colour, first);
@@ -66,7 +68,7 @@ class ScalarTileRenderer {
   LaneUse lane_use(Phase /*phase*/) const { return {}; }
 
  private:
-  FirstHitLayers LayersOf(const scalar::FirstHit<Real>& first) const {
+  FirstHitLayers LayersOf(const FirstHit<Real>& first) const {
     if (first.primitive == kNoPrimitive) return {};
     return MakeLayers(first.t, first.normal, first.albedo,
                       frame_.object_of_primitive[first.primitive]);
@@ -254,7 +256,7 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
                         options.width,
                         options.height,
                         static_cast<Real>(options.contrast.value_or(std::nan(""))),
-                        static_cast<Real>(options.min_weight)};
+                        static_cast<Real>(options.min_throughput)};
   if (options.skips == Skips::kOff) frame.tree.skips_boxes = frame.tree.node_count == 0;
   stats.compile_seconds = SecondsSince(start);
   progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
@@ -283,7 +285,8 @@ std::string Complaint(const RenderOptions& options) {
     return out_of_range("band rows", 0, kMaxImageSide);
   if (!within(options.threads, 0, kMaxThreads)) return out_of_range("threads", 0, kMaxThreads);
   if (!within(options.max_depth, 0, kMaxDepth)) return out_of_range("max depth", 0, kMaxDepth);
-  if (!(options.min_weight >= 0 && options.min_weight <= 1)) return "min weight must lie in [0, 1]";
+  if (!(options.min_throughput >= 0 && options.min_throughput <= 1))
+    return "min weight must lie in [0, 1]";
   if (options.contrast && !(*options.contrast >= 0 && *options.contrast <= 1)) {
     return "contrast must lie in [0, 1]";
   }

@@ -4,21 +4,20 @@
 
 #include <limits>
 
-#include "src/scalar/vec3.h"
-#include "src/scene/film.h"
+#include "sheaf/film.h"
+#include "src/core/vec3.h"
 
 namespace sheaf {
 
 // By default of a ray that meets nothing.
 struct FirstHitLayers {
   float depth = std::numeric_limits<float>::infinity();
-  scalar::Vec3<float> normal = {0, 0, 0}, albedo = {0, 0, 0};
+  Vec3<float> normal = {0, 0, 0}, albedo = {0, 0, 0};
   float id = 0;
 };
 
 template <typename Real>
-FirstHitLayers MakeLayers(Real t, scalar::Vec3<Real> normal, scalar::Vec3<Real> albedo,
-                          std::uint32_t object) {
+FirstHitLayers MakeLayers(Real t, Vec3<Real> normal, Vec3<Real> albedo, std::uint32_t object) {
   return {static_cast<float>(t), normal.template To<float>(), albedo.template To<float>(),
           static_cast<float>(object + 1)};
 }
@@ -30,7 +29,7 @@ inline bool HasFirstHitLayers(const Film& film) {
 }
 
 inline void StoreLayers(Film& film, int x, int y, const FirstHitLayers& hit) {
-  const auto store = [&](Layer layer, scalar::Vec3<float> value) {
+  const auto store = [&](Layer layer, Vec3<float> value) {
     float* const to = film.at(layer, x, y);
     to[0] = value.x, to[1] = value.y, to[2] = value.z;
   };

@@ -7,7 +7,10 @@
 #include "simd/face_light.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
+#include "simd/query.h"
 #include "simd/shade_ambient.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 #include "simd/triangle_surface.h"
 #include "src/core/even_bits.h"
 #include "src/render/store_layers.h"
@@ -87,18 +90,18 @@ void TileRenderer<Real>::RenderSample(const PixelList& pixels, std::size_t sampl
 }
 
 template <typename Real>
-void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth) {
-  if (bundle.count == 0) return;
-  Reserve(bundle.count);
+void TileRenderer<Real>::TraceAndShade(const RayQueue<Real>& queue, int depth) {
+  if (queue.count == 0) return;
+  Reserve(queue.count);
   const std::uint32_t first_reflected = next_reflected_.count;
   const std::uint32_t first_refracted = next_refracted_.count;
   reflecting_bins_ = refracting_bins_ = 0;
 
-  auto rays = bundle.rays.view();
+  auto rays = queue.rays.view();
   if (depth == 0) rays.source = nullptr;
-  kernels_.trace_closest(frame_.tree, rays, {}, bundle.count, Coherence::kUnknown, hits_.output());
-  Charge(Phase::kTrace, bundle.count, bundle.count);
-  binner_.Bin(hits_.view().primitive, bundle.count, frame_.primitives);
+  kernels_.trace_closest(frame_.tree, rays, {}, queue.count, Coherence::kUnknown, hits_.output());
+  Charge(Phase::kTrace, queue.count, queue.count);
+  binner_.Bin(hits_.view().primitive, queue.count, frame_.primitives);
   Charge(Phase::kBin);
 
   // Primary rays stand for their pixels, with a weight of 1.
@@ -108,16 +111,16 @@ void TileRenderer<Real>::TraceAndShade(const RayBundle<Real>& bundle, int depth)
     colours.g[ray] = frame_.background[1];
     colours.b[ray] = frame_.background[2];
   }
-  for (const HitBin& bin : binner_.bins()) ShadeBin(bundle, bin, depth);
-  FinishSpawn(bundle, next_reflected_, first_reflected, depth, reflecting_bins_);
-  FinishSpawn(bundle, next_refracted_, first_refracted, depth, refracting_bins_);
-  if (depth > 0) Accumulate(bundle);
+  for (const HitBin& bin : binner_.bins()) ShadeBin(queue, bin, depth);
+  FinishSpawn(queue, next_reflected_, first_reflected, depth, reflecting_bins_);
+  FinishSpawn(queue, next_refracted_, first_refracted, depth, refracting_bins_);
+  if (depth > 0) Accumulate(queue);
 }
 
 template <typename Real>
-void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth) {
+void TileRenderer<Real>::ShadeBin(const RayQueue<Real>& queue, const HitBin& bin, int depth) {
   const MaterialData<Real>& material = frame_.materials[bin.material];
-  auto rays = bundle.rays.view();
+  auto rays = queue.rays.view();
   if (bin.shape == ShapeKind::kSphere) {
     kernels_.sphere_surfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch, material.needs,
                              surfaces_.output());
@@ -152,7 +155,7 @@ void TileRenderer<Real>::ShadeBin(const RayBundle<Real>& bundle, const HitBin& b
   }
   Charge(Phase::kAccumulate);
   if (material.needs & kNeedsChildren) {
-    Spawn(bundle, material, surfaces, bin.batch.count, depth);
+    Spawn(queue, material, surfaces, bin.batch.count, depth);
   }
 }
 
@@ -192,12 +195,12 @@ std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light,
 }
 
 template <typename Real>
-void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material,
+void TileRenderer<Real>::Spawn(const RayQueue<Real>& queue, const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t count, int depth) {
-  auto parents = bundle.paths.view();
-  if (depth == 0) parents.weight_r = parents.weight_g = parents.weight_b = nullptr;
+  auto parents = queue.paths.view();
+  if (depth == 0) parents.throughput_r = parents.throughput_g = parents.throughput_b = nullptr;
   const SpawnCounts spawned =
-      kernels_.spawn_rays(material, surfaces, count, parents, frame_.min_weight,
+      kernels_.spawn_rays(material, surfaces, count, parents, frame_.min_throughput,
                           next_reflected_.rays.output(next_reflected_.count),
                           next_reflected_.paths.output(next_reflected_.count),
                           next_refracted_.rays.output(next_refracted_.count),
@@ -211,11 +214,11 @@ void TileRenderer<Real>::Spawn(const RayBundle<Real>& bundle, const MaterialData
 
 // One bin leaves its children in the order of their parents; several have to be merged into it.
 template <typename Real>
-void TileRenderer<Real>::FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children,
+void TileRenderer<Real>::FinishSpawn(const RayQueue<Real>& queue, RayQueue<Real>& children,
                                      std::uint32_t first, int depth, int spawning_bins) {
   if (children.count == first) return;
-  if (spawning_bins > 1) parent_order_.Apply(children, first, bundle.count);
-  const std::uint32_t* parent_pixel = bundle.paths.view().pixel;
+  if (spawning_bins > 1) parent_order_.Apply(children, first, queue.count);
+  const std::uint32_t* parent_pixel = queue.paths.view().pixel;
   const auto paths = children.paths.output(first);
   for (std::uint32_t i = 0; i < children.count - first; ++i) {
     paths.pixel[i] = depth == 0 ? paths.parent[i] : parent_pixel[paths.parent[i]];
@@ -226,15 +229,15 @@ void TileRenderer<Real>::FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Re
 // Ray by ray, because several may belong to one pixel, and in their order, which is part of the
 // result.
 template <typename Real>
-void TileRenderer<Real>::Accumulate(const RayBundle<Real>& bundle) {
-  const auto paths = bundle.paths.view();
+void TileRenderer<Real>::Accumulate(const RayQueue<Real>& queue) {
+  const auto paths = queue.paths.view();
   const auto colours = ray_colours_.view();
   const auto sample = sample_.output();
-  for (std::uint32_t i = 0; i < bundle.count; ++i) {
+  for (std::uint32_t i = 0; i < queue.count; ++i) {
     const std::uint32_t pixel = paths.pixel[i];
-    sample.r[pixel] += paths.weight_r[i] * colours.r[i];
-    sample.g[pixel] += paths.weight_g[i] * colours.g[i];
-    sample.b[pixel] += paths.weight_b[i] * colours.b[i];
+    sample.r[pixel] += paths.throughput_r[i] * colours.r[i];
+    sample.g[pixel] += paths.throughput_g[i] * colours.g[i];
+    sample.b[pixel] += paths.throughput_b[i] * colours.b[i];
   }
   Charge(Phase::kAccumulate);
 }
@@ -281,7 +284,7 @@ void TileRenderer<Real>::FindEdges(const PixelRect& tile) {
   is_edge_.assign(pixels_.count, false);
   const auto judge = [&](std::uint32_t a, std::uint32_t b) {
     if (is_edge_[a] && is_edge_[b]) return;
-    if (!scalar::HasEdgeBetween(first_hits_[a], first_hits_[b], frame_.contrast)) return;
+    if (!HasEdgeBetween(first_hits_[a], first_hits_[b], frame_.contrast)) return;
     is_edge_[a] = is_edge_[b] = true;
   };
   for (int y = ordered_.y0; y < ordered_.y1; ++y) {
@@ -307,9 +310,9 @@ void TileRenderer<Real>::RecordFirstHits(const HitBin& bin) {
   const auto surfaces = surfaces_.view();
   for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
     const std::uint32_t primitive = bin.batch.primitive[i];
-    scalar::FirstHit<Real>& first = first_hits_[bin.batch.ray[i]];
+    FirstHit<Real>& first = first_hits_[bin.batch.ray[i]];
     first.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
-    first.surface = scalar::SurfaceIdOf(primitive, frame_.primitives[primitive]);
+    first.surface = SurfaceIdOf(primitive, frame_.primitives[primitive]);
   }
 }
 
@@ -337,12 +340,12 @@ void TileRenderer<Real>::RecordLayers(const HitBin& bin, const MaterialData<Real
       surface.tint = {surfaces.tint_r[i], surfaces.tint_g[i], surfaces.tint_b[i]};
     }
     const auto albedo = scalar::MultiplyColours(scalar::PatternAt(material, surface), surface.tint);
-    StoreLayers(*layered_, static_cast<int>(pixels_.x[ray]) - layered_x_,
-                static_cast<int>(pixels_.y[ray]) - layered_y_,
-                MakeLayers(hits.t[ray],
-                           scalar::Vec3<Real>{surfaces.normal_x[i], surfaces.normal_y[i],
-                                              surfaces.normal_z[i]},
-                           albedo, frame_.object_of_primitive[bin.batch.primitive[i]]));
+    StoreLayers(
+        *layered_, static_cast<int>(pixels_.x[ray]) - layered_x_,
+        static_cast<int>(pixels_.y[ray]) - layered_y_,
+        MakeLayers(hits.t[ray],
+                   Vec3<Real>{surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]},
+                   albedo, frame_.object_of_primitive[bin.batch.primitive[i]]));
   }
 }
 

@@ -8,13 +8,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "sheaf/render.h"
 #include "simd/kernels.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
 #include "simd/target.h"
 #include "src/render/bin_hits.h"
-#include "src/render/ray_bundle.h"
-#include "src/render/render.h"
-#include "src/scalar/first_hit.h"
-#include "src/scalar/frame_view.h"
+#include "src/render/ray_queue.h"
+#include "src/stream/first_hit.h"
+#include "src/stream/frame_view.h"
 #include "src/stream/stream.h"
 
 namespace sheaf {
@@ -75,18 +77,18 @@ class TileRenderer {
   void OrderPixels(const PixelRect& tile);
   void RenderSample(const PixelList& pixels, std::size_t sample);
   void Generate(const PixelList& pixels, std::size_t sample);
-  void TraceAndShade(const RayBundle<Real>& bundle, int depth);
-  void ShadeBin(const RayBundle<Real>& bundle, const HitBin& bin, int depth);
+  void TraceAndShade(const RayQueue<Real>& queue, int depth);
+  void ShadeBin(const RayQueue<Real>& queue, const HitBin& bin, int depth);
   void ShadeLights(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
                    std::uint32_t count);
   // Returns how many surfaces the light reaches.
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
-  void Spawn(const RayBundle<Real>& bundle, const MaterialData<Real>& material,
+  void Spawn(const RayQueue<Real>& queue, const MaterialData<Real>& material,
              const SurfaceView<Real>& surfaces, std::uint32_t count, int depth);
-  void FinishSpawn(const RayBundle<Real>& bundle, RayBundle<Real>& children, std::uint32_t first,
+  void FinishSpawn(const RayQueue<Real>& queue, RayQueue<Real>& children, std::uint32_t first,
                    int depth, int spawning_bins);
-  void Accumulate(const RayBundle<Real>& bundle);
+  void Accumulate(const RayQueue<Real>& queue);
   void AddSample(std::size_t index);
   void AddSampleOfEdges(std::size_t index);
   void RecordFirstHits(const HitBin& bin);
@@ -121,17 +123,17 @@ class TileRenderer {
   ColourStream<Real> sample_;            // of the list that is being traced
   ColourStream<Real> mean_;              // by pixel of pixels_, where there are several samples
   PixelList edges_;                      // the pixels of pixels_ that get all samples
-  std::vector<std::uint32_t> position_of_edge_;     // in pixels_
-  std::vector<scalar::FirstHit<Real>> first_hits_;  // by pixel of pixels_
-  std::vector<bool> is_edge_;                       // by pixel of pixels_
+  std::vector<std::uint32_t> position_of_edge_;  // in pixels_
+  std::vector<FirstHit<Real>> first_hits_;       // by pixel of pixels_
+  std::vector<bool> is_edge_;                    // by pixel of pixels_
   bool records_first_hits_ = false;
   Film* layered_ = nullptr;  // where the layers of the sample in work go; null: it leaves none
   PixelRect layered_tile_;
   int layered_x_ = 0, layered_y_ = 0;  // the film's top left pixel
 
-  RayBundle<Real> primary_;
+  RayQueue<Real> primary_;
   // The rays of this depth and of the next; reflected before refracted wherever their order counts.
-  RayBundle<Real> reflected_, refracted_, next_reflected_, next_refracted_;
+  RayQueue<Real> reflected_, refracted_, next_reflected_, next_refracted_;
   ParentOrder<Real> parent_order_;
   int reflecting_bins_ = 0, refracting_bins_ = 0;
 

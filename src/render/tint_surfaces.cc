@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "simd/shading.h"
+#include "simd/streams.h"
 #include "src/scalar/sample_texture.h"
 
 namespace sheaf {

@@ -4,8 +4,10 @@
 
 #include <span>
 
+#include "simd/shading.h"
+#include "simd/streams.h"
 #include "src/render/bin_hits.h"
-#include "src/scalar/frame_view.h"
+#include "src/stream/frame_view.h"
 
 namespace sheaf {
 

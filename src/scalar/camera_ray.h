@@ -2,6 +2,7 @@
 #ifndef SHEAF_SCALAR_CAMERA_RAY_H_
 #define SHEAF_SCALAR_CAMERA_RAY_H_
 
+#include "simd/shading.h"
 #include "src/scalar/ray.h"
 
 namespace sheaf::scalar {

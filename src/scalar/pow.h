@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "simd/pow_terms.h"
-#include "src/scalar/vec3.h"
+#include "src/core/vec3.h"
 
 namespace sheaf::scalar {
 

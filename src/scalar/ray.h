@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "simd/layout.h"
-#include "src/scalar/vec3.h"
+#include "simd/query.h"
+#include "src/core/vec3.h"
 
 namespace sheaf::scalar {
 
@@ -13,7 +13,7 @@ template <typename Real>
 struct Ray {
   Vec3<Real> origin;
   Vec3<Real> direction;                 // any length; t counts in lengths of it
-  std::uint32_t source = kNoPrimitive;  // see layout.h
+  std::uint32_t source = kNoPrimitive;  // see simd/query.h
   Real t_min = kDefaultTMin<Real>;
   Real t_max = kDefaultTMax<Real>;
 };

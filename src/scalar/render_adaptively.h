@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "sheaf/film.h"
 #include "src/scalar/render_pixel.h"
-#include "src/scene/film.h"
 
 namespace sheaf::scalar {
 

@@ -2,21 +2,23 @@
 //
 // Whitted, "An Improved Illumination Model for Shaded Display" (CACM 1980), breadth first: a
 // depth's rays are shaded in order, then all their reflections, then all their refractions make the
-// next depth. Each ray's colour, times its weight, is added to the sample in that order; simd/ and
-// src/render keep to it.
+// next depth. Each ray's colour, times its throughput, is added to the sample in that order; simd/
+// and src/render keep to it.
 #ifndef SHEAF_SCALAR_RENDER_PIXEL_H_
 #define SHEAF_SCALAR_RENDER_PIXEL_H_
 
 #include <atomic>
 #include <vector>
 
+#include "sheaf/stats.h"
+#include "simd/query.h"
+#include "simd/shading.h"
 #include "src/scalar/camera_ray.h"
-#include "src/scalar/first_hit.h"
-#include "src/scalar/frame_view.h"
-#include "src/scalar/ray_counts.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
 #include "src/scalar/trace_tree.h"
+#include "src/stream/first_hit.h"
+#include "src/stream/frame_view.h"
 
 namespace sheaf::scalar {
 
@@ -54,10 +56,11 @@ Surface<Real> SurfaceOf(const FrameView<Real>& frame, const Ray<Real>& ray, cons
   return SphereSurface(ray, hit, frame.geometry.spheres, local);
 }
 
-// Adds `colour`, seen with `weight`, to `sum`.
+// Adds `colour`, seen with `throughput`, to `sum`.
 template <typename Real>
-void Accumulate(Vec3<Real>& sum, const Real (&weight)[3], Vec3<Real> colour) {
-  sum = sum + Vec3<Real>{weight[0] * colour.x, weight[1] * colour.y, weight[2] * colour.z};
+void Accumulate(Vec3<Real>& sum, const Real (&throughput)[3], Vec3<Real> colour) {
+  sum = sum +
+        Vec3<Real>{throughput[0] * colour.x, throughput[1] * colour.y, throughput[2] * colour.z};
 }
 
 // The colour of one sample: breadth first from its primary ray, which has depth 0. Leaves in
@@ -75,7 +78,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
     for (const Path<Real>& path : scratch.paths) {
       const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
       if (hit.primitive == kNoPrimitive) {
-        Accumulate(sum, path.weight, FromArray(frame.background));
+        Accumulate(sum, path.throughput, FromArray(frame.background));
         continue;
       }
       const MaterialData<Real>& material =
@@ -88,12 +91,12 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
         first->albedo = BaseColourAt(material, frame.textures, surface);
         first->primitive = hit.primitive;
       }
-      Accumulate(sum, path.weight, LocalLight(frame, material, surface, tally));
+      Accumulate(sum, path.throughput, LocalLight(frame, material, surface, tally));
       if (!SpawnsRays(material)) continue;
-      const Spawned<Real> spawned = Spawn(material, surface, path.weight);
-      if (spawned.reflected.counts(frame.min_weight))
+      const Spawned<Real> spawned = Spawn(material, surface, path.throughput);
+      if (spawned.reflected.counts(frame.min_throughput))
         scratch.reflected.push_back(spawned.reflected);
-      if (spawned.refracted.counts(frame.min_weight))
+      if (spawned.refracted.counts(frame.min_throughput))
         scratch.refracted.push_back(spawned.refracted);
     }
     tally.reflected += scratch.reflected.size();

@@ -4,16 +4,16 @@
 
 #include <cmath>
 
-#include "simd/layout.h"
-#include "src/scalar/vec3.h"
+#include "simd/shading.h"
+#include "src/core/vec3.h"
 
 namespace sheaf::scalar {
 
 // `x` brought into [0, 1].
 template <typename Real>
-Real WrapCoordinate(Wrap wrap, Real x) {
-  if (wrap == Wrap::kRepeat) return x - std::floor(x);
-  if (wrap == Wrap::kMirror) {
+Real WrapCoordinate(TextureWrap wrap, Real x) {
+  if (wrap == TextureWrap::kRepeat) return x - std::floor(x);
+  if (wrap == TextureWrap::kMirror) {
     const Real within = x - 2 * std::floor(x / 2);
     return within > 1 ? 2 - within : within;
   }
@@ -21,9 +21,9 @@ Real WrapCoordinate(Wrap wrap, Real x) {
 }
 
 // A texel's index in [-1, count] brought into [0, count): the neighbour of the last one.
-inline int WrapTexel(Wrap wrap, int i, int count) {
+inline int WrapTexel(TextureWrap wrap, int i, int count) {
   if (i >= 0 && i < count) return i;
-  if (wrap == Wrap::kRepeat) return i < 0 ? count - 1 : 0;
+  if (wrap == TextureWrap::kRepeat) return i < 0 ? count - 1 : 0;
   return i < 0 ? 0 : count - 1;
 }
 
@@ -48,7 +48,7 @@ Vec3<Real> SampleTexture(const TextureData<Real>& texture, Real u, Real v) {
   const auto row = [&](Real at) {
     return WrapTexel(texture.wrap_v, static_cast<int>(at), texture.height);
   };
-  if (texture.filter == Filter::kNearest) {
+  if (texture.filter == TextureFilter::kNearest) {
     return Texel(texture, column(std::floor(x)), row(std::floor(y)));
   }
   const Real left = std::floor(x - Real(0.5)), top = std::floor(y - Real(0.5));

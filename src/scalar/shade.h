@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "simd/shading.h"
 #include "src/scalar/pow.h"
 #include "src/scalar/sample_texture.h"
 #include "src/scalar/surface.h"

@@ -2,6 +2,8 @@
 #ifndef SHEAF_SCALAR_SHADOW_RAY_H_
 #define SHEAF_SCALAR_SHADOW_RAY_H_
 
+#include "simd/query.h"
+#include "simd/shading.h"
 #include "src/scalar/shade.h"
 
 namespace sheaf::scalar {

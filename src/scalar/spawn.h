@@ -3,6 +3,8 @@
 #ifndef SHEAF_SCALAR_SPAWN_H_
 #define SHEAF_SCALAR_SPAWN_H_
 
+#include "simd/query.h"
+#include "simd/shading.h"
 #include "src/scalar/shade.h"
 
 namespace sheaf::scalar {
@@ -44,12 +46,14 @@ Split<Real> FresnelSplit(Real eta, Real cos_i) {
 template <typename Real>
 struct Path {
   Ray<Real> ray;
-  Real weight[3];
+  Real throughput[3];
 
-  // Whether it is traced: not where all it could add is weighed by `min_weight` or less (Hall and
-  // Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds nothing.
-  bool counts(Real min_weight = 0) const {
-    return weight[0] > min_weight || weight[1] > min_weight || weight[2] > min_weight;
+  // Whether it is traced: not where all it could add is weighed by `min_throughput` or less (Hall
+  // and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds
+  // nothing.
+  bool counts(Real min_throughput = 0) const {
+    return throughput[0] > min_throughput || throughput[1] > min_throughput ||
+           throughput[2] > min_throughput;
   }
 };
 
@@ -71,7 +75,7 @@ Vec3<Real> KeepOnSide(const Surface<Real>& surface, Vec3<Real> direction, Real s
 
 template <typename Real>
 Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
-                    const Real (&weight)[3]) {
+                    const Real (&throughput)[3]) {
   const Vec3<Real> n = surface.normal, d = surface.direction;
   const Real towards = -Dot(n, d);
   const Real cos_i = towards > 0 ? towards : Real(0);
@@ -91,8 +95,8 @@ Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& sur
   for (int i = 0; i < 3; ++i) {
     const Real reflect = material.reflect[i] + material.transmit[i] * split.reflectance;
     const Real transmit = split.is_total ? Real(0) : material.transmit[i] * (1 - split.reflectance);
-    spawned.reflected.weight[i] = weight[i] * reflect;
-    spawned.refracted.weight[i] = weight[i] * transmit;
+    spawned.reflected.throughput[i] = throughput[i] * reflect;
+    spawned.refracted.throughput[i] = throughput[i] * transmit;
   }
   return spawned;
 }

@@ -7,12 +7,14 @@
 #ifndef SHEAF_SCALAR_SURFACE_H_
 #define SHEAF_SCALAR_SURFACE_H_
 
+#include "simd/query.h"
 #include "simd/roundoffs.h"
+#include "simd/tree.h"
 #include "src/scalar/trace.h"
 
 namespace sheaf::scalar {
 
-// What SurfaceFields in layout.h holds for one hit.
+// What SurfaceFields of simd/streams.h holds for one hit.
 template <typename Real>
 struct Surface {
   Vec3<Real> position;

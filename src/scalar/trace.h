@@ -2,6 +2,8 @@
 #ifndef SHEAF_SCALAR_TRACE_H_
 #define SHEAF_SCALAR_TRACE_H_
 
+#include "simd/query.h"
+#include "simd/tree.h"
 #include "src/scalar/intersect_sphere.h"
 #include "src/scalar/intersect_triangle.h"
 #include "src/scalar/ray.h"
@@ -12,7 +14,7 @@ template <typename Real>
 struct Hit {
   Real t;
   std::uint32_t primitive = kNoPrimitive;
-  Real u = 0, v = 0;  // see HitFields in layout.h
+  Real u = 0, v = 0;  // see HitFields of simd/streams.h
 };
 
 template <typename Real>

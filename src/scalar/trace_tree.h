@@ -5,7 +5,9 @@
 
 #include <bit>
 
-#include "src/scalar/ray_box.h"
+#include "simd/query.h"
+#include "simd/tree.h"
+#include "src/scalar/ray_slabs.h"
 #include "src/scalar/trace.h"
 
 namespace sheaf::scalar {
@@ -44,7 +46,7 @@ class TreeTracer {
     if (!FitsBoxes(tree_, ray_)) {
       TestEveryLeaf();
     } else {
-      box_ = BoxOf(tree_, ray_);
+      box_ = SlabsOf(tree_, ray_);
       Walk();
     }
     return closest_;
@@ -145,7 +147,7 @@ class TreeTracer {
   Ray<Real> ray_;
   Hit<Real> closest_;
   TriangleShear<Real> shear_;
-  RayBox<Real> box_;
+  RaySlabs<Real> box_;
 };
 
 template <typename Real>

@@ -1,4 +1,4 @@
-#include "src/scene/film.h"
+#include "sheaf/film.h"
 
 namespace sheaf {
 

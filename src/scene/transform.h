@@ -5,7 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <string>
 
-#include "src/scene/scene.h"
+#include "sheaf/scene.h"
 
 namespace sheaf {
 

@@ -1,18 +1,18 @@
-// The owning arrays behind the views of simd/layout.h.
+// The owning arrays behind the views of simd/streams.h.
 #ifndef SHEAF_STREAM_STREAM_H_
 #define SHEAF_STREAM_STREAM_H_
 
-#include "simd/layout.h"
+#include "simd/streams.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf {
 
-// `Fields` is one of the field lists of layout.h: Stream<float, RayFields> owns what RayView<float>
-// shows.
+// `Fields` is one of the field lists of streams.h: Stream<float, RayFields> owns what
+// RayView<float> shows.
 template <typename Real, template <typename, template <typename> class> class Fields>
 class Stream {
  public:
-  // Makes room for `n` elements with the padding of layout.h; what the stream held is lost.
+  // Makes room for `n` elements with the padding of streams.h; what the stream held is lost.
   void Allocate(std::uint32_t n) {
     ForEachField(arrays_, [&](auto& field) { field.Allocate(StreamCapacity(n)); });
   }

@@ -1,0 +1,104 @@
+// What a frame is shaded with: materials, textures, lights and the camera, as kernels read them.
+#ifndef SHEAF_SIMD_SHADING_H_
+#define SHEAF_SIMD_SHADING_H_
+
+#include <cstdint>
+
+namespace sheaf {
+
+enum class BaseColour : std::uint32_t { kConstant, kChecker, kTexture };
+
+// What a material asks for; what it does not ask for is skipped. Asking for more changes no bit.
+inline constexpr std::uint32_t kNeedsCoordinates = 1;    // u and v, for its base colour
+inline constexpr std::uint32_t kNeedsLights = 2;         // diffuse or highlight
+inline constexpr std::uint32_t kNeedsHighlight = 4;      // a power for each light
+inline constexpr std::uint32_t kNeedsChildren = 8;       // reflected or refracted rays
+inline constexpr std::uint32_t kNeedsTransmission = 16;  // Fresnel's split
+inline constexpr std::uint32_t kNeedsNormals = 32;       // shading normals besides the faces'
+inline constexpr std::uint32_t kNeedsTint = 64;          // a texture, or colours of vertices
+inline constexpr std::uint32_t kNeedsAll = 127;
+
+template <typename Real>
+struct MaterialData {
+  std::uint32_t needs;  // NeedsOf(*this), or more
+  BaseColour kind;
+  std::uint32_t texture;  // index into the frame's textures; of kTexture alone
+  Real even[3], odd[3];   // linear RGB; the same where there is no checker
+  Real cells[2];          // checker cells across the unit interval of u and of v
+  Real ambient[3];        // ka times the ambient light
+  Real emission[3];       // added as it is
+  Real kd, ks, shininess;
+  Real reflect[3], transmit[3];
+  Real ior;
+};
+
+template <typename Real>
+constexpr bool AnyPositive(const Real (&c)[3]) {
+  return c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
+template <typename Real>
+constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
+  const bool transmits = AnyPositive(material.transmit);
+  return (material.kind != BaseColour::kConstant ? kNeedsCoordinates : 0) |
+         (material.kd > 0 || material.ks > 0 ? kNeedsLights : 0) |
+         (material.ks > 0 ? kNeedsHighlight : 0) |
+         (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
+         (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
+         (transmits ? kNeedsTransmission : 0);
+}
+
+// How a texture goes on beyond the unit interval of a surface coordinate.
+enum class TextureWrap : std::uint32_t { kRepeat, kMirror, kClamp };
+enum class TextureFilter : std::uint32_t { kNearest, kLinear };
+
+// Rows from the top, where v is 0; a texel's channels are the bytes of its number from the lowest:
+// r, g, b, a.
+template <typename Real>
+struct TextureData {
+  const std::uint32_t* texels;
+  int width, height;   // in [1, kMaxTextureSide]
+  const Real* decode;  // linear light by byte, 256 of them
+  TextureWrap wrap_u, wrap_v;
+  TextureFilter filter;
+};
+
+enum class LightKind : std::uint32_t {
+  kPointFromLight,    // shadow rays run from the light, so that a batch shares its origin
+  kPointFromSurface,  // a light so far away that rounding there would reach the surface
+  kDirectional,
+};
+
+template <typename Real>
+struct LightData {
+  LightKind kind;
+  Real vector[3];   // position, or the unit vector toward a directional light
+  Real rgb[3];      // colour * intensity * exposure
+  Real falloff[3];  // kc, kl, kq; 1, 0, 0 for directional lights
+  std::uint32_t casts_shadows;
+  // A spot light's cone: light is scaled by the square of cone_scale * cos + cone_offset, clamped
+  // to [0, 1], with cos of the angle between `axis`, the unit vector it shines along, and the ray
+  // to the surface.
+  std::uint32_t is_spot = 0;
+  Real axis[3] = {};
+  Real cone_scale = 0, cone_offset = 0;
+};
+
+// Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
+// and b = half_height - (y + sy) steps up.
+template <typename Real>
+struct CameraData {
+  std::uint32_t orthographic;
+  Real eye[3], forward[3];       // forward is a unit vector
+  Real right[3], up[3];          // a pixel's step on the plane one unit ahead, or in scene units
+  Real half_width, half_height;  // pixels
+};
+
+// How many children surfaces have.
+struct SpawnCounts {
+  std::uint32_t reflected, refracted;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SIMD_SHADING_H_

@@ -1,0 +1,162 @@
+// The streams that kernels read and write, as plain views.
+//
+// Layout: structure of arrays, one pointer a field. Owning arrays are aligned to kAlignment; a view
+//   may start anywhere in them, so kernels assume no alignment.
+// Padding: a stream of `n` elements owns StreamCapacity(n) of each field. Kernels load and store
+//   whole vectors: lanes past the count may hold anything on entry and anything on return.
+// Aliasing: the fields of a view never overlap, and no output overlaps an input.
+// NaN: allowed everywhere in rays; such a ray misses (src/scalar/ray.h).
+// Colours are never -0: a sum of them is then the same whether it starts at 0 or at the first.
+// `Real` is float or double; identifiers are 32 bit in both.
+#ifndef SHEAF_SIMD_STREAMS_H_
+#define SHEAF_SIMD_STREAMS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+
+namespace sheaf {
+
+inline constexpr std::size_t kAlignment = 64;
+// Kernels use at most this many lanes, whatever the target offers.
+inline constexpr std::uint32_t kMaxLanes = 16;
+
+constexpr std::uint32_t PaddedCount(std::uint32_t n) {
+  return (n + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+}
+// One vector more than padded, because compaction stores a whole vector at any offset below n.
+constexpr std::uint32_t StreamCapacity(std::uint32_t n) { return PaddedCount(n) + kMaxLanes; }
+
+// A stream is declared once, over what a field is: an owning array, a pointer or a const pointer.
+
+template <typename T>
+using MutableField = T*;
+template <typename T>
+using ConstField = const T*;
+
+// What TraceClosest and TraceOccluded read of a ray.
+template <typename Real, template <typename> class Field>
+struct RayFields {
+  Field<Real> origin_x, origin_y, origin_z;
+  Field<Real> direction_x, direction_y, direction_z;  // any length
+  Field<std::uint32_t> source;  // kNoPrimitive: none; a null pointer: none for all
+
+  static constexpr auto kFields = std::make_tuple(
+      &RayFields::origin_x, &RayFields::origin_y, &RayFields::origin_z, &RayFields::direction_x,
+      &RayFields::direction_y, &RayFields::direction_z, &RayFields::source);
+};
+
+// What the schedule keeps of a ray besides: where its light goes, and how much of it.
+template <typename Real, template <typename> class Field>
+struct PathFields {
+  Field<std::uint32_t> pixel;                            // index into the tile
+  Field<std::uint32_t> parent;                           // position in the stream that spawned it
+  Field<Real> throughput_r, throughput_g, throughput_b;  // throughput since the eye
+
+  static constexpr auto kFields =
+      std::make_tuple(&PathFields::pixel, &PathFields::parent, &PathFields::throughput_r,
+                      &PathFields::throughput_g, &PathFields::throughput_b);
+};
+
+// What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
+// are 0) and parameters of the hit. Triangle: barycentric weights of the second and third vertex.
+// Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so
+// that t + v is the root to twice the bits of float (0 in double and in fast arithmetic).
+template <typename Real, template <typename> class Field>
+struct HitFields {
+  Field<Real> t, u, v;
+  Field<std::uint32_t> primitive;
+
+  static constexpr auto kFields =
+      std::make_tuple(&HitFields::t, &HitFields::u, &HitFields::v, &HitFields::primitive);
+};
+
+// A point to be shaded.
+template <typename Real, template <typename> class Field>
+struct SurfaceFields {
+  Field<Real> position_x, position_y, position_z;
+  Field<Real> normal_x, normal_y, normal_z;  // shading normal: unit, on the face's side
+  Field<Real> face_x, face_y, face_z;  // the face's own normal: unit, facing the ray; these fields
+                                       // may be the normal's where the two are one
+  Field<Real> direction_x, direction_y, direction_z;  // of the ray, unit
+  Field<Real> u, v;                                   // surface coordinates, 0 on spheres
+  Field<Real> tint_r, tint_g, tint_b;  // what the base colour is multiplied with, point by point
+  Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
+  Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
+  Field<std::uint32_t> ray;     // position in the ray stream
+
+  // What few scenes have comes last, so that arrays that are used together lie together.
+  static constexpr auto kFields = std::make_tuple(
+      &SurfaceFields::position_x, &SurfaceFields::position_y, &SurfaceFields::position_z,
+      &SurfaceFields::normal_x, &SurfaceFields::normal_y, &SurfaceFields::normal_z,
+      &SurfaceFields::direction_x, &SurfaceFields::direction_y, &SurfaceFields::direction_z,
+      &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::offset, &SurfaceFields::source,
+      &SurfaceFields::ray, &SurfaceFields::face_x, &SurfaceFields::face_y, &SurfaceFields::face_z,
+      &SurfaceFields::tint_r, &SurfaceFields::tint_g, &SurfaceFields::tint_b);
+};
+
+// Linear RGB, one an element.
+template <typename Real, template <typename> class Field>
+struct ColourFields {
+  Field<Real> r, g, b;
+
+  static constexpr auto kFields =
+      std::make_tuple(&ColourFields::r, &ColourFields::g, &ColourFields::b);
+};
+
+template <typename Real>
+using RayView = RayFields<Real, ConstField>;
+template <typename Real>
+using RayOutput = RayFields<Real, MutableField>;
+template <typename Real>
+using PathView = PathFields<Real, ConstField>;
+template <typename Real>
+using PathOutput = PathFields<Real, MutableField>;
+template <typename Real>
+using HitView = HitFields<Real, ConstField>;
+template <typename Real>
+using HitOutput = HitFields<Real, MutableField>;
+template <typename Real>
+using SurfaceView = SurfaceFields<Real, ConstField>;
+template <typename Real>
+using SurfaceOutput = SurfaceFields<Real, MutableField>;
+template <typename Real>
+using ColourView = ColourFields<Real, ConstField>;
+template <typename Real>
+using ColourOutput = ColourFields<Real, MutableField>;
+
+// Calls f(field of a, field of b) for the fields of two instances of one stream, in order.
+template <typename A, typename B, typename F>
+constexpr void ForEachField(A& a, B& b, F f) {
+  constexpr std::size_t kCount = std::tuple_size_v<decltype(A::kFields)>;
+  [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+    (f(a.*std::get<kIndex>(A::kFields), b.*std::get<kIndex>(B::kFields)), ...);
+  }
+  (std::make_index_sequence<kCount>());
+}
+template <typename A, typename F>
+constexpr void ForEachField(A& a, F f) {
+  std::apply([&](auto... member) { (f(a.*member), ...); }, A::kFields);
+}
+
+// A list of hits that are treated alike: positions in the ray stream, and what each ray hit there.
+struct HitBatch {
+  const std::uint32_t* ray;
+  const std::uint32_t* local;      // index into the spheres, or into the triangles
+  const std::uint32_t* primitive;  // id
+  std::uint32_t count;
+};
+
+// The same surfaces where no normal but the face's own is used.
+template <typename Real>
+SurfaceView<Real> WithoutFaces(SurfaceView<Real> surfaces) {
+  surfaces.face_x = surfaces.normal_x;
+  surfaces.face_y = surfaces.normal_y;
+  surfaces.face_z = surfaces.normal_z;
+  return surfaces;
+}
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SIMD_STREAMS_H_

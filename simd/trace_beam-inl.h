@@ -1,0 +1,135 @@
+// Several lanes through the tree together, where a lane is a ray (a packet) or a group of rays (a
+// frustum): two tests a node, first the whole beam against the eight children, then each child it
+// may meet against the lanes.
+#if defined(SHEAF_SIMD_TRACE_BEAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHEAF_SIMD_TRACE_BEAM_INL_H_
+#undef SHEAF_SIMD_TRACE_BEAM_INL_H_
+#else
+#define SHEAF_SIMD_TRACE_BEAM_INL_H_
+#endif
+
+#include "simd/streams.h"
+#include "simd/trace_ray-inl.h"
+#include "simd/tree.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
+
+// A lane enters a box at the latest of plane * scale + offset over the axes, by the `enter` terms,
+// and leaves it at the earliest, by the `leave` terms. All lanes share the octant. The whole
+// beam: it enters a box no earlier than (plane - all_enter) * all_enter_scale, and likewise
+// leaves it.
+template <typename Real>
+struct alignas(kAlignment) Beam {
+  static constexpr std::uint32_t kSize = kPacketSize<Real>;
+  Real enter_scale[3][kSize], enter[3][kSize];
+  Real leave_scale[3][kSize], leave[3][kSize];
+  Real t_min[kSize];
+  Real t_last[kSize];  // t_best times kBoxFarFactor; kDone: not in the beam
+  Real all_enter[3], all_enter_scale[3], all_leave[3], all_leave_scale[3];
+  Real all_t_min;
+  std::uint32_t octant;
+};
+
+// Which of several boxes, one a lane, the beam may meet up to t_last; by the planes where it
+// enters and leaves them. A plane behind it gives a negative number, whichever the scale.
+template <class D, class V, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Mask<D> BeamMeets(D d, const Beam<Real>& beam, V in_x, V in_y, V in_z, V out_x,
+                                 V out_y, V out_z, V t_last) {
+  const auto enter_at = [&](V plane, int axis) SHEAF_LAMBDA {
+    return hn::Mul(hn::Sub(plane, hn::Set(d, beam.all_enter[axis])),
+                   hn::Set(d, beam.all_enter_scale[axis]));
+  };
+  const auto leave_at = [&](V plane, int axis) SHEAF_LAMBDA {
+    return hn::Mul(hn::Sub(plane, hn::Set(d, beam.all_leave[axis])),
+                   hn::Set(d, beam.all_leave_scale[axis]));
+  };
+  const V enter = hn::Max(hn::Max(enter_at(in_x, 0), enter_at(in_y, 1)),
+                          hn::Max(enter_at(in_z, 2), hn::Set(d, beam.all_t_min)));
+  const V leave =
+      hn::Mul(hn::Min(hn::Min(leave_at(out_x, 0), leave_at(out_y, 1)), leave_at(out_z, 2)),
+              hn::Set(d, Real(kBoxFarFactor)));
+  return hn::Le(enter, hn::Min(leave, t_last));
+}
+
+template <typename Real>
+struct alignas(kAlignment) BeamStackEntry {
+  Real enter[kPacketSize<Real>];
+  std::uint32_t child;
+};
+
+// What a visitor makes of a child that some lanes may meet: done with it, or the node's children
+// are to be visited.
+enum class Visit { kDone, kDescend };
+
+// Calls visit(child, lanes) for the children that `lanes` (a mask, never empty) may meet, front to
+// back, from `start` on; it may lower t_last of the lanes.
+template <typename Real, class Visitor>
+HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uint32_t start,
+                          Visitor visit) {
+  const Lanes<Real> d;
+  const LeafLanes<Real> d8;
+  const std::uint32_t octant = beam.octant;
+  std::uint32_t in[3], out[3];
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const bool backward = octant >> axis & 1;
+    in[axis] = backward ? axis + 3 : axis;
+    out[axis] = backward ? axis : axis + 3;
+  }
+  const auto far_factor = hn::Set(d, Real(kBoxFarFactor));
+
+  BeamStackEntry<Real> stack[kTreeStackSize];
+  std::uint32_t size = 1;
+  hn::Store(hn::Load(d, beam.t_min), d, stack[0].enter);
+  stack[0].child = start;
+  while (size > 0) {
+    const BeamStackEntry<Real>& top = stack[--size];
+    const std::uint32_t child = top.child;
+    const auto t_last = hn::Load(d, beam.t_last);
+    const auto lanes = hn::Le(hn::Load(d, top.enter), t_last);
+    if (hn::AllFalse(d, lanes)) continue;
+    if (visit(child, lanes) == Visit::kDone) continue;
+
+    const TreeNode& node = tree.nodes[child];
+    const auto all_t_last = hn::Set(d8, hn::GetLane(hn::MaxOfLanes(d, t_last)));
+    std::uint32_t met = 0;
+    for (std::uint32_t i = 0; i < kTreeWidth; i += LaneCount(d8)) {
+      const auto plane = [&](std::uint32_t row)
+                             SHEAF_LAMBDA { return LoadPlanes(d8, node.bounds[row] + i); };
+      met |= MaskBits(d8, BeamMeets(d8, beam, plane(in[0]), plane(in[1]), plane(in[2]),
+                                    plane(out[0]), plane(out[1]), plane(out[2]), all_t_last))
+             << i;
+    }
+
+    // Those that are left against each lane; the nearest is pushed last.
+    std::uint32_t order = node.order[octant];
+    for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
+      const std::uint32_t i = order >> 28;
+      order <<= 4;
+      if ((met >> i & 1) == 0) continue;
+      const auto enter_at = [&](int axis) SHEAF_LAMBDA {
+        return hn::MulAdd(hn::Set(d, static_cast<Real>(node.bounds[in[axis]][i])),
+                          hn::Load(d, beam.enter_scale[axis]), hn::Load(d, beam.enter[axis]));
+      };
+      const auto leave_at = [&](int axis) SHEAF_LAMBDA {
+        return hn::MulAdd(hn::Set(d, static_cast<Real>(node.bounds[out[axis]][i])),
+                          hn::Load(d, beam.leave_scale[axis]), hn::Load(d, beam.leave[axis]));
+      };
+      const auto enter =
+          hn::Max(hn::Max(enter_at(0), enter_at(1)), hn::Max(enter_at(2), hn::Load(d, beam.t_min)));
+      const auto leave =
+          hn::Mul(hn::Min(hn::Min(leave_at(0), leave_at(1)), leave_at(2)), far_factor);
+      const auto meets = hn::Le(enter, hn::Min(leave, t_last));
+      if (hn::AllFalse(d, meets)) continue;
+      hn::Store(hn::IfThenElse(meets, enter, hn::Inf(d)), d, stack[size].enter);
+      stack[size].child = node.child[i];
+      FetchAhead(tree, node.child[i]);
+      ++size;
+    }
+  }
+}
+
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // SHEAF_SIMD_TRACE_BEAM_INL_H_

@@ -1,0 +1,67 @@
+// A ray as box tests see it.
+//
+// Slabs after Kay and Kajiya, conservative after Ize, "Robust BVH Ray Traversal" (JCGT 2013): a box
+// that holds a primitive is never missed by a ray that hits it, as computed. Different from the
+// paper: no component of a direction is zero here (docs/numerics.md), so that no NaN appears, and
+// the origin moves by its own rounding error, so that plane * scale + offset may be fused or not.
+#ifndef SHEAF_SCALAR_RAY_SLABS_H_
+#define SHEAF_SCALAR_RAY_SLABS_H_
+
+#include <algorithm>
+#include <cmath>
+
+#include "simd/tree.h"
+#include "src/scalar/ray.h"
+
+namespace sheaf::scalar {
+
+// The ray meets the plane p of `axis` at p * scale + offset: an `enter` offset for the planes where
+// it enters boxes, which bends the result down, and a `leave` offset, which bends it up.
+template <typename Real>
+struct RaySlabs {
+  Real scale[3], enter[3], leave[3];
+  int enter_row[3], leave_row[3];  // of TreeNode::bounds
+  int octant;
+};
+
+template <typename Real>
+Real LargestComponent(Vec3<Real> a) {
+  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+}
+
+// Whether box tests hold for the ray: what is not within their limits is tested without boxes.
+template <typename Real>
+bool FitsBoxes(const TreeView<Real>& tree, const Ray<Real>& ray) {
+  const Real size = LargestComponent(ray.direction);
+  return IsWithinBoxLimits(tree) && LargestComponent(ray.origin) <= kMaxBoxCoordinate &&
+         size >= kMinBoxDirection && size <= kMaxBoxDirection && ray.t_min >= 0;
+}
+
+template <typename Real>
+RaySlabs<Real> SlabsOf(const TreeView<Real>& tree, const Ray<Real>& ray) {
+  const Real least = LargestComponent(ray.direction) * Real(kMinBoxSlope);
+  Real reach = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    reach =
+        std::max({reach, tree.upper[axis] - ray.origin[axis], ray.origin[axis] - tree.lower[axis]});
+  }
+  RaySlabs<Real> box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Real o = ray.origin[axis], d = ray.direction[axis];
+    const bool backward = std::signbit(d), steep = std::abs(d) < least;
+    Real slack = std::abs(o) * Real(kBoxOriginSlack) + Real(kBoxAbsoluteSlack);
+    if (steep) slack += reach * Real(2 * kMinBoxSlope);
+    if (backward) slack = -slack;
+    box.scale[axis] = 1 / (steep ? std::copysign(least, d) : d);
+    box.enter[axis] = -((o + slack) * box.scale[axis]);
+    box.leave[axis] = -((o - slack) * box.scale[axis]);
+    box.enter_row[axis] = backward ? axis + 3 : axis;
+    box.leave_row[axis] = backward ? axis : axis + 3;
+    box.octant |= int{backward} << axis;
+  }
+  return box;
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_RAY_SLABS_H_

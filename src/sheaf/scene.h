@@ -1,0 +1,186 @@
+// A scene as a person describes it: names, double precision, no layout for speed.
+//
+// Lengths are in one unit of the user's choice, angles in degrees, colours linear RGB. The renderer
+// compiles a Scene into flat arrays (render/compile_scene.h); nothing here is read per ray.
+#ifndef SHEAF_SHEAF_SCENE_H_
+#define SHEAF_SHEAF_SCENE_H_
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace sheaf {
+
+using Vec3d = glm::dvec3;
+using Colour = glm::dvec3;  // linear RGB, each component >= 0 and finite
+
+// Cells of the surface coordinates (u, v): with a = floor(u * cells.x) and b = floor(v * cells.y),
+// `even` shows where a + b is even, `odd` elsewhere.
+struct Checker {
+  Colour even{1.0};
+  Colour odd{0.0};
+  glm::dvec2 cells{1.0};  // cells across the unit interval of u and of v, > 0
+};
+
+enum class Transfer { kLinear, kSrgb };
+
+// How a texture goes on beyond the unit interval of a surface coordinate.
+enum class Wrap { kRepeat, kMirror, kClamp };
+enum class Filter { kNearest, kLinear };
+inline constexpr int kMaxTextureSide = 16384;
+
+// A picture to take colours from. Rows from the top; a texel's lowest byte is red, then green and
+// blue; the highest counts for nothing.
+struct Image {
+  std::string name;                   // for messages and for files made of it; may be empty
+  int width = 0, height = 0;          // [1, kMaxTextureSide]
+  std::vector<std::uint32_t> texels;  // width * height
+};
+
+// An image on a surface, u to the right and v down, once across the unit interval of each. Its
+// colours are multiplied by `factor`.
+struct Texture {
+  std::shared_ptr<const Image> image;   // not null
+  Transfer transfer = Transfer::kSrgb;  // of the image
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  Filter filter = Filter::kLinear;
+  Colour factor{1.0};
+};
+
+// Whitted's material: what the surface itself sends to the eye, and what it passes on.
+struct Material {
+  std::string name;
+  std::variant<Colour, Checker, Texture> base_colour = Colour(1.0);
+  Colour emission{0.0};    // seen as it is, whatever lights there are
+  double ambient = 0.0;    // ka, >= 0: ka * base * the scene's ambient light
+  double kd = 0.0;         // diffuse, >= 0
+  double ks = 0.0;         // half-vector highlight, >= 0; has the light's colour
+  double shininess = 1.0;  // highlight exponent, >= 0
+  Colour reflect{0.0};     // mirror reflectance, [0, 1]
+  Colour transmit{0.0};  // [0, 1]: share that meets a dielectric interface and is split by Fresnel
+  double ior = 1.0;      // index of refraction inside over outside, > 0
+};
+
+struct Sphere {
+  Vec3d center{0.0};
+  double radius = 1.0;  // >= 0; a sphere of radius 0 is never hit
+};
+
+// Front side: counter-clockwise. Surface coordinates: (0,0), (1,0), (0,1) unless `uv` says
+// otherwise.
+struct Triangle {
+  std::array<Vec3d, 3> vertices;
+  std::array<glm::dvec2, 3> uv{glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1)};
+};
+
+// Four coplanar corners in order; u runs from the first to the second, v from the first to the
+// fourth. It is traced as the triangles (0, 1, 2) and (0, 2, 3).
+struct Quad {
+  std::array<Vec3d, 4> corners;
+};
+
+// Triangles that share vertices, in the floats of model files. Front side: counter-clockwise.
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  // Each empty, or one a vertex.
+  std::vector<glm::vec3> normals;  // for shading, of any length; 0: the face's own
+  std::vector<glm::vec2> uv;
+  std::vector<glm::vec3> colours;                       // linear, times the base colour
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // vertices, below positions.size()
+};
+
+struct Object {
+  std::string name;  // may be empty
+  std::variant<Sphere, Quad, Triangle, Mesh> shape;
+  std::uint32_t material = 0;  // index into Scene::materials
+};
+
+// How the illuminance of a point light falls with the distance r: one over kc + kl r + kq r^2.
+struct Falloff {
+  double constant = 0.0, linear = 0.0, quadratic = 1.0;  // >= 0, not all 0
+};
+
+// Light in a cone alone: all of it within `inner` of the axis, none beyond `outer`, smooth between
+// (KHR_lights_punctual).
+struct Cone {
+  Vec3d direction{0.0, -1.0, 0.0};   // the way the light travels; any length but 0
+  double inner = 0.0, outer = 45.0;  // degrees from the axis, 0 <= inner < outer <= 90
+};
+
+struct PointLight {
+  Vec3d position{0.0};
+  Falloff falloff;
+  std::optional<Cone> cone = std::nullopt;
+};
+
+struct DirectionalLight {
+  Vec3d direction{0.0, -1.0, 0.0};  // the way the light travels; any length but 0
+};
+
+// At distance r a point light gives intensity * colour * exposure / (kc + kl r + kq r^2), a
+// directional light intensity * colour * exposure.
+struct Light {
+  std::string name;
+  std::variant<PointLight, DirectionalLight> source;
+  Colour colour{1.0};
+  double intensity = 1.0;  // >= 0
+  bool casts_shadows = true;
+};
+
+struct Perspective {
+  double fov_y = 60.0;  // full vertical angle in degrees, in (0, 180)
+};
+
+struct Orthographic {
+  double height = 2.0;  // of the picture in scene units, > 0
+};
+
+struct Camera {
+  std::string name;
+  Vec3d eye{0.0};
+  Vec3d look_at{0.0, 0.0, -1.0};
+  Vec3d up{0.0, 1.0, 0.0};
+  std::variant<Perspective, Orthographic> projection;
+};
+
+// A named list of cameras, rendered together.
+struct View {
+  std::string name;
+  std::vector<std::uint32_t> cameras;  // indices into Scene::cameras
+};
+
+// Readers take no larger number for a place or a length: sums of a few are finite as floats.
+inline constexpr double kMaxCoordinate = 1e30;
+
+inline constexpr int kMaxImageSide = 65536;
+inline constexpr int kMaxSamples = 65536;
+inline constexpr int kMaxDepth = 1000000;
+
+struct Settings {
+  int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
+  int samples = 1;                // a pixel, [1, kMaxSamples]
+  int max_depth = 5;              // a ray deeper than this is black; primary rays have depth 0
+  Colour background{0.0};
+  std::optional<Colour> ambient;          // ambient light; the background where absent
+  double exposure = 1.0;                  // scales every light but the ambient one, > 0
+  Transfer transfer = Transfer::kLinear;  // of colours read and of 8-bit pictures written
+};
+
+struct Scene {
+  Settings settings;
+  std::vector<Material> materials;
+  std::vector<Object> objects;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  std::vector<View> views;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SHEAF_SCENE_H_

@@ -1,0 +1,26 @@
+// The version of these headers.
+#ifndef SHEAF_SHEAF_VERSION_H_
+#define SHEAF_SHEAF_VERSION_H_
+
+// CMake reads the project's version from here.
+#define SHEAF_VERSION_MAJOR 0
+#define SHEAF_VERSION_MINOR 2
+#define SHEAF_VERSION_PATCH 0
+
+#define SHEAF_STRINGIFY_(x) #x
+#define SHEAF_STRINGIFY(x) SHEAF_STRINGIFY_(x)
+#define SHEAF_VERSION_STRING           \
+  SHEAF_STRINGIFY(SHEAF_VERSION_MAJOR) \
+  "." SHEAF_STRINGIFY(SHEAF_VERSION_MINOR) "." SHEAF_STRINGIFY(SHEAF_VERSION_PATCH)
+
+namespace sheaf {
+
+inline constexpr char kVersion[] = SHEAF_VERSION_STRING;
+
+// The version of the library that runs, like "0.2.0": another than kVersion where a shared library
+// was exchanged. Lives as long as the process.
+const char* LibraryVersion();
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SHEAF_VERSION_H_

@@ -1,0 +1,44 @@
+// Everything that the rays of one frame read, as plain views: what scene compilation leaves.
+#ifndef SHEAF_STREAM_FRAME_VIEW_H_
+#define SHEAF_STREAM_FRAME_VIEW_H_
+
+#include <span>
+
+#include "simd/shading.h"
+#include "simd/tree.h"
+
+namespace sheaf {
+
+// Set in PrimitiveInfo::local where the primitive is a triangle.
+inline constexpr std::uint32_t kTriangleBit = 0x80000000u;
+
+struct PrimitiveInfo {
+  std::uint32_t local;     // index into the spheres or the triangles, with kTriangleBit
+  std::uint32_t material;  // index into the materials
+};
+
+template <typename Real>
+struct FrameView {
+  GeometryView<Real> geometry;                // what surfaces are read from
+  TreeView<Real> tree;                        // over it: what rays are traced against
+  std::span<const PrimitiveInfo> primitives;  // by primitive id
+  std::span<const std::uint32_t> object_of_primitive;
+  std::span<const MaterialData<Real>> materials;
+  std::span<const TextureData<Real>> textures;
+  std::span<const LightData<Real>> lights;
+  std::span<const Real> sample_x, sample_y;  // in [0, 1), one an element of the sample pattern
+  CameraData<Real> camera;
+  Real background[3];
+  int max_depth;
+  int width, height;  // of the whole picture
+  // Adaptive sampling: the contrast that is an edge (src/scalar/first_hit.h); NaN: all samples
+  // everywhere.
+  Real contrast;
+  Real min_throughput;  // secondary rays of no more are not traced; 0: of none
+
+  bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_STREAM_FRAME_VIEW_H_
