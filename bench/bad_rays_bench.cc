@@ -13,10 +13,11 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
+#include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/target.h"
 #include "src/bvh/geometry.h"
+#include "src/core/running_target.h"
 
 namespace sheaf::bench {
 namespace {
@@ -57,18 +58,21 @@ RayBatch DamagedRays(const BenchScene& scene, Damage damage) {
 
 void TraceRays(benchmark::State& state, const Geometry& geometry, const RayBatch& batch,
                Query query, const std::string& target) {
-  if (!simd::ForceTarget(target) || simd::RunningTarget() != target) {
+  const std::optional<Target> chosen = Target::Named(target);
+  if (!chosen || RunningTarget(*chosen) != target) {
     state.SkipWithError("another target runs");
     return;
   }
+  TraceOptions options;
+  options.target = *chosen;
   std::vector<float> t(batch.count);
   std::vector<std::uint32_t> primitive(batch.count);
   for (auto _ : state) {
     if (query == Query::kClosest) {
       TraceClosest(geometry, batch.view(), batch.count,
-                   {.t = t.data(), .primitive = primitive.data()});
+                   {.t = t.data(), .primitive = primitive.data()}, options);
     } else {
-      TraceOccluded(geometry, batch.view(), batch.count, primitive.data());
+      TraceOccluded(geometry, batch.view(), batch.count, primitive.data(), options);
     }
     benchmark::DoNotOptimize(primitive.data());
   }
@@ -89,7 +93,7 @@ int Main(int argc, char** argv) {
   if (!geometry) return 1;
   std::vector<RayBatch> batches;
   for (const auto& [damage, name] : kDamages) batches.push_back(DamagedRays(scene, damage));
-  for (const std::string& target : simd::UsableTargets()) {
+  for (const std::string& target : UsableTargets()) {
     for (const auto& [query, verb] : {std::pair(Query::kClosest, "TraceClosest/"),
                                       std::pair(Query::kOccluded, "TraceOccluded/")}) {
       for (std::size_t i = 0; i < batches.size(); ++i) {

@@ -12,10 +12,11 @@
 #include <optional>
 
 #include "bench/interleave.h"
+#include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/target.h"
 #include "simd/tree.h"
+#include "src/core/running_target.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf::bench {
@@ -135,8 +136,9 @@ std::uint32_t CountScalarDifferences(const Answers& sheaf, const Answers& scalar
   return count;
 }
 
-void ForceTargetOrExit(const std::string& target) {
-  if (simd::ForceTarget(target) && simd::RunningTarget() == target) return;
+Target TargetOrExit(const std::string& target) {
+  const std::optional<Target> named = Target::Named(target);
+  if (named && RunningTarget(*named) == target) return *named;
   fmt::print(stderr, "embree_bench: the target {} is not usable\n", target);
   std::exit(EXIT_FAILURE);
 }
@@ -231,12 +233,11 @@ Comparison CompareKind(const BenchScene& scene, const Geometry& geometry, Embree
                            [&] { embree.Trace(method); }});
   }
   for (std::size_t i = 0; i < options.targets.size(); ++i) {
+    TraceOptions on_target = trace_options;
+    on_target.target = TargetOrExit(options.targets[i]);
     contestants.push_back(
-        {[&, i] {
-           flush.reset();
-           ForceTargetOrExit(options.targets[i]);
-         },
-         [&, i] { TraceSheaf(geometry, batch, query, trace_options, answers[i]); }});
+        {[&] { flush.reset(); },
+         [&, i, on_target] { TraceSheaf(geometry, batch, query, on_target, answers[i]); }});
   }
   contestants.push_back({[&] { flush.reset(); },
                          [&] { TraceScalar(geometry.tree(), batch, query, scalar_answers); }});
@@ -285,7 +286,6 @@ void CompareTracers(const BenchScene& scene, const CompareOptions& options,
   }
   EmbreeSide embree(scene);
 
-  ForceTargetOrExit(simd::UsableTargets().front());
   const RayBatch primary = PrimaryRays(scene, options.picture_size);
   Answers hits(primary.count);
   TraceSheaf(geometry.value(), primary, Query::kClosest, {}, hits);

@@ -19,7 +19,8 @@
 #include "bench/compare_tracers.h"
 #include "bench/embree_peer.h"
 #include "bench/make_scenes.h"
-#include "simd/target.h"
+#include "sheaf/target.h"
+#include "src/core/running_target.h"
 
 namespace sheaf::bench {
 namespace {
@@ -225,7 +226,7 @@ std::optional<std::vector<RayKind>> ParseKinds(const std::vector<std::string>& n
 
 // "best" is the best usable target, "all" are all of them.
 std::optional<std::vector<std::string>> ParseTargets(const std::vector<std::string>& names) {
-  const std::vector<std::string> usable = simd::UsableTargets();
+  const std::vector<std::string> usable = UsableTargets();
   std::vector<std::string> targets;
   for (const std::string& name : names) {
     if (name == "all") return usable;
@@ -278,7 +279,7 @@ int Main(int argc, char** argv) {
   request.compare.kinds = *parsed_kinds;
   const auto parsed_targets = ParseTargets(targets);
   if (!parsed_targets) {
-    return Fail(fmt::format("usable targets: {}", fmt::join(simd::UsableTargets(), ", ")));
+    return Fail(fmt::format("usable targets: {}", fmt::join(UsableTargets(), ", ")));
   }
   request.compare.targets = *parsed_targets;
   if (ChooseScenes(request).empty()) return Fail("no scene has such a name (--list)");

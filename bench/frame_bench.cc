@@ -13,7 +13,8 @@
 
 #include "bench/frame_scenes.h"
 #include "sheaf/render.h"
-#include "simd/target.h"
+#include "sheaf/target.h"
+#include "src/core/running_target.h"
 #include "src/formats/scene_json.h"
 #include "src/lab/pov_ray.h"
 
@@ -30,11 +31,12 @@ void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& came
   options.max_depth = scene.settings.max_depth;
   options.threads = 1;
   options.skips = skips;
-  options.engine = target == "scalar" ? Engine::kScalar : Engine::kSimd;
-  if (options.engine == Engine::kSimd && !simd::ForceTarget(target)) {
+  const std::optional<Target> chosen = Target::Named(target);
+  if (!chosen) {
     state.SkipWithError("the target is not usable");
     return;
   }
+  options.target = *chosen;
   // As the command does it, but for the writing.
   const RowSink drop = [](const Film& rows) {
     benchmark::DoNotOptimize(rows.rgb.data());
@@ -142,7 +144,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", scene.error().message);
     return EXIT_FAILURE;
   }
-  std::vector<std::string> targets = simd::UsableTargets();
+  std::vector<std::string> targets = UsableTargets();
   targets.push_back("scalar");
   Scene crystal_ball = std::move(scene).value();
   crystal_ball.settings.width = 1280;

@@ -16,11 +16,12 @@
 
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
+#include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/target.h"
 #include "src/bvh/geometry.h"
 #include "src/core/parallel.h"
+#include "src/core/running_target.h"
 #include "src/core/vec3.h"
 
 #ifdef SHEAF_BENCH_EMBREE
@@ -137,11 +138,12 @@ bool IsLeak(std::uint32_t primitive, float t) {
   return primitive == kNoPrimitive || !(std::abs(t - 1) <= kSlack);
 }
 
-void CountSheaf(const Geometry& geometry, const RayBatch& batch, std::uint64_t number,
-                Leaks& leaks) {
+void CountSheaf(const Geometry& geometry, Target target, const RayBatch& batch,
+                std::uint64_t number, Leaks& leaks) {
   constexpr Coherence kCoherences[] = {Coherence::kUnknown, Coherence::kCommonOrigin,
                                        Coherence::kCoherent, Coherence::kIncoherent};
   TraceOptions options;
+  options.target = target;
   options.coherence = kCoherences[number / 3 % 4];
   std::vector<float> t(batch.count);
   std::vector<std::uint32_t> primitive(batch.count), occluded(batch.count);
@@ -220,8 +222,9 @@ int Main(int argc, char** argv) {
   fmt::print("{:<16}{:>14}{:>18}{:>18}\n", "tracer", "rays", "nearest-hit leaks",
              "occlusion leaks");
   std::uint64_t sheaf_leaks = 0;
-  for (const std::string& target : simd::UsableTargets()) {
-    if (!simd::ForceTarget(target) || simd::RunningTarget() != target) {
+  for (const std::string& target : UsableTargets()) {
+    const std::optional<Target> chosen = Target::Named(target);
+    if (!chosen || RunningTarget(*chosen) != target) {
       fmt::print(stderr, "leak_bench: another target ran than {}\n", target);
       return EXIT_FAILURE;
     }
@@ -229,7 +232,7 @@ int Main(int argc, char** argv) {
     CountLeaks(
         rays, batches, threads,
         [&](const RayBatch& batch, std::uint64_t number, Leaks& found) {
-          CountSheaf(geometry.value(), batch, number, found);
+          CountSheaf(geometry.value(), *chosen, batch, number, found);
         },
         leaks);
     Print(target, leaks, batches * kBatch);

@@ -87,16 +87,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(BlendVertices);
-
-template <typename Real>
-void BlendVertices(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
-                   const HitBatch& batch, std::uint32_t needs,
-                   const SurfaceOutput<Real>& surfaces) {
-  SHEAF_DISPATCH(Real, BlendVertices)(triangles, hits, batch, needs, surfaces);
-}
-SHEAF_INSTANTIATE(BlendVertices);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

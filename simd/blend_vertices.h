@@ -6,16 +6,17 @@
 #include "simd/streams.h"
 #include "simd/tree.h"
 
-namespace sheaf::simd {
+namespace sheaf {
 
 // Of surfaces[0, batch.count) that TriangleSurfaces left: with kNeedsNormals in `needs` keeps the
 // face's normal as the face, and puts the shading normal in its place where the vertices have one;
 // with kNeedsTint writes the tint. Bits: as sheaf::scalar::TriangleSurface. Reads and writes
 // PaddedCount(batch.count) lanes.
 template <typename Real>
-void BlendVertices(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
-                   const HitBatch& batch, std::uint32_t needs, const SurfaceOutput<Real>& surfaces);
+using BlendVerticesKernel = void(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
+                                 const HitBatch& batch, std::uint32_t needs,
+                                 const SurfaceOutput<Real>& surfaces);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_BLEND_VERTICES_H_

@@ -1,49 +1,58 @@
-// Choosing the float or the double version of a kernel, on the target in force.
+// The tables through which a kernel is found by target.
 //
 // Every kernel file follows one pattern. Highway compiles it once a target (foreach_target.h);
 // there the template over the lane type gets two names, NAMEF32 and NAMEF64, which HWY_EXPORT puts
-// into a table by target. Once, under HWY_ONCE, the public function looks up the table: one
-// dispatch a batch.
+// into a table by target. Once, under HWY_ONCE, SHEAF_EXPORT makes those tables and a function that
+// looks one up, which simd/kernels.cc calls: one look-up a frame or a batch.
 #ifndef SHEAF_SIMD_DISPATCH_H_
 #define SHEAF_SIMD_DISPATCH_H_
 
+#include <cstddef>
 #include <type_traits>
 
 #include "hwy/highway.h"
 #include "simd/arithmetic.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
-template <typename Real, typename FloatKernel, typename DoubleKernel>
-constexpr auto KernelFor(FloatKernel* for_float, DoubleKernel* for_double) {
-  if constexpr (std::is_same_v<Real, float>) {
-    return for_float;
-  } else {
-    return for_double;
-  }
+// Where a kernel for one target has no table but one entry, as without dynamic dispatch, that is
+// it.
+template <typename Kernel, std::size_t kSize>
+constexpr Kernel* EntryOf(Kernel* const (&table)[kSize], std::size_t index) {
+  return table[kSize == 1 ? 0 : index];
 }
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
-// NAMEF32 and NAMEF64, HWY_EXPORT of both, and the public function for float and double. Fast
-// arithmetic is for float alone.
+// Names the float and the double version of NAMELanes, inside HWY_NAMESPACE; and, outside, defines
+// NAMEKernel<Real>* FindNAME<Real>(index) by DispatchIndex of simd/target.h. Fast arithmetic is for
+// float alone.
 #ifdef SHEAF_FAST
 #define SHEAF_NAME_KERNELS(NAME) constexpr auto& NAME##F32 = NAME##Lanes<float>
-#define SHEAF_EXPORT(NAME) HWY_EXPORT(NAME##F32)
-#define SHEAF_INSTANTIATE(NAME) template decltype(NAME<float>) NAME<float>
-#define SHEAF_DISPATCH(Real, NAME) HWY_DYNAMIC_DISPATCH(NAME##F32)
+#define SHEAF_EXPORT(NAME)                                \
+  HWY_EXPORT(NAME##F32);                                  \
+  template <typename Real>                                \
+  NAME##Kernel<Real>* Find##NAME(std::size_t index) {     \
+    return EntryOf(HWY_DISPATCH_TABLE(NAME##F32), index); \
+  }                                                       \
+  template NAME##Kernel<float>* Find##NAME<float>(std::size_t)
 #else
 #define SHEAF_NAME_KERNELS(NAME)                  \
   constexpr auto& NAME##F32 = NAME##Lanes<float>; \
   constexpr auto& NAME##F64 = NAME##Lanes<double>
-#define SHEAF_EXPORT(NAME) \
-  HWY_EXPORT(NAME##F32);   \
-  HWY_EXPORT(NAME##F64)
-#define SHEAF_INSTANTIATE(NAME)               \
-  template decltype(NAME<float>) NAME<float>; \
-  template decltype(NAME<double>) NAME<double>
-#define SHEAF_DISPATCH(Real, NAME) \
-  KernelFor<Real>(HWY_DYNAMIC_DISPATCH(NAME##F32), HWY_DYNAMIC_DISPATCH(NAME##F64))
+#define SHEAF_EXPORT(NAME)                                      \
+  HWY_EXPORT(NAME##F32);                                        \
+  HWY_EXPORT(NAME##F64);                                        \
+  template <typename Real>                                      \
+  NAME##Kernel<Real>* Find##NAME(std::size_t index) {           \
+    if constexpr (std::is_same_v<Real, float>) {                \
+      return EntryOf(HWY_DISPATCH_TABLE(NAME##F32), index);     \
+    } else {                                                    \
+      return EntryOf(HWY_DISPATCH_TABLE(NAME##F64), index);     \
+    }                                                           \
+  }                                                             \
+  template NAME##Kernel<float>* Find##NAME<float>(std::size_t); \
+  template NAME##Kernel<double>* Find##NAME<double>(std::size_t)
 #endif
 
 #endif  // SHEAF_SIMD_DISPATCH_H_

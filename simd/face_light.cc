@@ -48,16 +48,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(FaceLight);
-
-template <typename Real>
-std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& material,
-                        const SurfaceView<Real>& surfaces, std::uint32_t count,
-                        std::uint32_t* faces) {
-  return SHEAF_DISPATCH(Real, FaceLight)(light, material, surfaces, count, faces);
-}
-SHEAF_INSTANTIATE(FaceLight);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

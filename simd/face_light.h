@@ -5,15 +5,16 @@
 #include "simd/shading.h"
 #include "simd/streams.h"
 
-namespace sheaf::simd {
+namespace sheaf {
 
 // Writes faces[0, count): 1 where the light lies above the surface (n . l > 0) and the surface
 // shows its own light, else 0. Returns how many do. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-std::uint32_t FaceLight(const LightData<Real>& light, const MaterialData<Real>& material,
-                        const SurfaceView<Real>& surfaces, std::uint32_t count,
-                        std::uint32_t* faces);
+using FaceLightKernel = std::uint32_t(const LightData<Real>& light,
+                                      const MaterialData<Real>& material,
+                                      const SurfaceView<Real>& surfaces, std::uint32_t count,
+                                      std::uint32_t* faces);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_FACE_LIGHT_H_

@@ -53,15 +53,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(GeneratePrimary);
-
-template <typename Real>
-void GeneratePrimary(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx, Real sy,
-                     std::uint32_t count, const RayOutput<Real>& rays) {
-  SHEAF_DISPATCH(Real, GeneratePrimary)(camera, x, y, sx, sy, count, rays);
-}
-SHEAF_INSTANTIATE(GeneratePrimary);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

@@ -5,15 +5,16 @@
 #include "simd/shading.h"
 #include "simd/streams.h"
 
-namespace sheaf::simd {
+namespace sheaf {
 
 // Writes the origins and directions of `count` rays, one a pixel at the point (sx, sy) in [0, 1)^2
 // of it; `x` and `y` hold whole numbers. Leaves the sources alone. Directions are unit vectors.
 // Bits: as sheaf::scalar::CameraRay. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void GeneratePrimary(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx, Real sy,
-                     std::uint32_t count, const RayOutput<Real>& rays);
+using GeneratePrimaryKernel = void(const CameraData<Real>& camera, const Real* x, const Real* y,
+                                   Real sx, Real sy, std::uint32_t count,
+                                   const RayOutput<Real>& rays);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_GENERATE_PRIMARY_H_

@@ -77,16 +77,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(GenerateShadow);
-
-template <typename Real>
-std::uint32_t GenerateShadow(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
-                             const std::uint32_t* faces, std::uint32_t count,
-                             const RayOutput<Real>& rays, std::uint32_t* surface_of_ray) {
-  return SHEAF_DISPATCH(Real, GenerateShadow)(light, surfaces, faces, count, rays, surface_of_ray);
-}
-SHEAF_INSTANTIATE(GenerateShadow);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

@@ -1,32 +1,57 @@
-// The kernels that exist in strict and in fast arithmetic, as tables to choose from at run time.
+// The table of kernels: every kernel of one target and one arithmetic.
 #ifndef SHEAF_SIMD_KERNELS_H_
 #define SHEAF_SIMD_KERNELS_H_
 
-#include "simd/arithmetic.h"
+#include "simd/blend_vertices.h"
+#include "simd/face_light.h"
+#include "simd/generate_primary.h"
+#include "simd/generate_shadow.h"
+#include "simd/report_target.h"
+#include "simd/shade_ambient.h"
 #include "simd/shade_light.h"
 #include "simd/spawn_rays.h"
 #include "simd/sphere_surface.h"
+#include "simd/target.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
+#include "simd/triangle_surface.h"
+
+// The one list of kernels, each by name and by field of the table. These gain nothing by fast
+// arithmetic, and are compiled once.
+#define SHEAF_STRICT_KERNELS(X)          \
+  X(ReportTarget, report_target)         \
+  X(GeneratePrimary, generate_primary)   \
+  X(TriangleSurfaces, triangle_surfaces) \
+  X(BlendVertices, blend_vertices)       \
+  X(ShadeAmbient, shade_ambient)         \
+  X(FaceLight, face_light)               \
+  X(GenerateShadow, generate_shadow)
+// These are compiled for fast arithmetic once more (CMakeLists.txt).
+#define SHEAF_FAST_KERNELS(X)        \
+  X(TraceClosest, trace_closest)     \
+  X(TraceOccluded, trace_occluded)   \
+  X(SphereSurfaces, sphere_surfaces) \
+  X(ShadeLight, shade_light)         \
+  X(SpawnRays, spawn_rays)
 
 namespace sheaf {
 
-// Each as its header says, on the target in force.
+// Each as its header says, under NAMEKernel. Safe to call from any number of threads.
 template <typename Real>
 struct Kernels {
-  decltype(&SHEAF_SIMD::TraceClosest<Real>) trace_closest;
-  decltype(&SHEAF_SIMD::TraceOccluded<Real>) trace_occluded;
-  decltype(&SHEAF_SIMD::SphereSurfaces<Real>) sphere_surfaces;
-  decltype(&SHEAF_SIMD::ShadeLight<Real>) shade_light;
-  decltype(&SHEAF_SIMD::SpawnRays<Real>) spawn_rays;
+#define SHEAF_FIELD(NAME, field) NAME##Kernel<Real>* field;
+  SHEAF_STRICT_KERNELS(SHEAF_FIELD)
+  SHEAF_FAST_KERNELS(SHEAF_FIELD)
+#undef SHEAF_FIELD
 };
 
+// `target` is a bit of simd::UsableTargets(), or 0 for the best.
 template <typename Real>
-Kernels<Real> StrictKernels();
+Kernels<Real> StrictKernels(std::int64_t target);
 
 // The same contracts but for the bits, which are not those of src/scalar and differ by target:
 // errors as measured in docs/numerics.md.
-Kernels<float> FastKernels();
+Kernels<float> FastKernels(std::int64_t target);
 
 }  // namespace sheaf
 

@@ -35,15 +35,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(ShadeAmbient);
-
-template <typename Real>
-void ShadeAmbient(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                  std::uint32_t count, const ColourOutput<Real>& colours) {
-  SHEAF_DISPATCH(Real, ShadeAmbient)(material, surfaces, count, colours);
-}
-SHEAF_INSTANTIATE(ShadeAmbient);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

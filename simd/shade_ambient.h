@@ -5,14 +5,15 @@
 #include "simd/shading.h"
 #include "simd/streams.h"
 
-namespace sheaf::simd {
+namespace sheaf {
 
 // Writes colours[0, count): the ambient term, and 0 inside a transparent body. Bits: as
 // sheaf::scalar::LocalLight without lights. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void ShadeAmbient(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                  std::uint32_t count, const ColourOutput<Real>& colours);
+using ShadeAmbientKernel = void(const MaterialData<Real>& material,
+                                const SurfaceView<Real>& surfaces, std::uint32_t count,
+                                const ColourOutput<Real>& colours);
 
-}  // namespace sheaf::simd
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_SHADE_AMBIENT_H_

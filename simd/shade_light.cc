@@ -63,16 +63,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::SHEAF_SIMD {
-
 SHEAF_EXPORT(ShadeLight);
-
-template <typename Real>
-void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material,
-                const SurfaceView<Real>& surfaces, const std::uint32_t* lit, std::uint32_t count,
-                const ColourOutput<Real>& colours) {
-  SHEAF_DISPATCH(Real, ShadeLight)(light, material, surfaces, lit, count, colours);
-}
-SHEAF_INSTANTIATE(ShadeLight);
-
 }  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

@@ -2,19 +2,18 @@
 #ifndef SHEAF_SIMD_SHADE_LIGHT_H_
 #define SHEAF_SIMD_SHADE_LIGHT_H_
 
-#include "simd/arithmetic.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
 // Adds to colours[0, count) where lit != 0. Bits: as sheaf::scalar::LitBy. Reads and writes
 // PaddedCount(count) lanes.
 template <typename Real>
-void ShadeLight(const LightData<Real>& light, const MaterialData<Real>& material,
-                const SurfaceView<Real>& surfaces, const std::uint32_t* lit, std::uint32_t count,
-                const ColourOutput<Real>& colours);
+using ShadeLightKernel = void(const LightData<Real>& light, const MaterialData<Real>& material,
+                              const SurfaceView<Real>& surfaces, const std::uint32_t* lit,
+                              std::uint32_t count, const ColourOutput<Real>& colours);
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_SHADE_LIGHT_H_

@@ -203,21 +203,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::SHEAF_SIMD {
-
 SHEAF_EXPORT(SpawnRays);
-
-template <typename Real>
-SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
-                      const RayOutput<Real>& reflected_rays,
-                      const PathOutput<Real>& reflected_paths,
-                      const RayOutput<Real>& refracted_rays,
-                      const PathOutput<Real>& refracted_paths) {
-  return SHEAF_DISPATCH(Real, SpawnRays)(material, surfaces, count, parents, min_throughput,
-                                         reflected_rays, reflected_paths, refracted_rays,
-                                         refracted_paths);
-}
-SHEAF_INSTANTIATE(SpawnRays);
-
 }  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

@@ -2,11 +2,10 @@
 #ifndef SHEAF_SIMD_SPAWN_RAYS_H_
 #define SHEAF_SIMD_SPAWN_RAYS_H_
 
-#include "simd/arithmetic.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
 // Appends the children of surfaces[0, count), in order and without gaps, from position 0 of each
 // output: rays, the position of the parent in its stream (`paths.parent`) and the throughput;
@@ -15,13 +14,14 @@ namespace sheaf::SHEAF_SIMD {
 // left out. Bits: as sheaf::scalar::Spawn. Reads PaddedCount(count) lanes; writes
 // StreamCapacity(count) at most.
 template <typename Real>
-SpawnCounts SpawnRays(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
-                      const RayOutput<Real>& reflected_rays,
-                      const PathOutput<Real>& reflected_paths,
-                      const RayOutput<Real>& refracted_rays,
-                      const PathOutput<Real>& refracted_paths);
+using SpawnRaysKernel = SpawnCounts(const MaterialData<Real>& material,
+                                    const SurfaceView<Real>& surfaces, std::uint32_t count,
+                                    const PathView<Real>& parents, Real min_throughput,
+                                    const RayOutput<Real>& reflected_rays,
+                                    const PathOutput<Real>& reflected_paths,
+                                    const RayOutput<Real>& refracted_rays,
+                                    const PathOutput<Real>& refracted_paths);
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_SPAWN_RAYS_H_

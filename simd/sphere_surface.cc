@@ -143,16 +143,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::SHEAF_SIMD {
-
 SHEAF_EXPORT(SphereSurfaces);
-
-template <typename Real>
-void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
-                    const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
-                    const SurfaceOutput<Real>& surfaces) {
-  SHEAF_DISPATCH(Real, SphereSurfaces)(spheres, rays, hits, batch, needs, surfaces);
-}
-SHEAF_INSTANTIATE(SphereSurfaces);
-
 }  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

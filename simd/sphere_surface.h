@@ -2,21 +2,20 @@
 #ifndef SHEAF_SIMD_SPHERE_SURFACE_H_
 #define SHEAF_SIMD_SPHERE_SURFACE_H_
 
-#include "simd/arithmetic.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
 // Writes surfaces[0, batch.count) from the batch's rays, hits and spheres. Directions are unit
 // vectors. u and v are left alone unless `needs` has kNeedsCoordinates, faces and tints always.
 // Bits: as sheaf::scalar::SphereSurface. Reads and writes PaddedCount(batch.count) lanes.
 template <typename Real>
-void SphereSurfaces(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
-                    const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
-                    const SurfaceOutput<Real>& surfaces);
+using SphereSurfacesKernel = void(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
+                                  const HitView<Real>& hits, const HitBatch& batch,
+                                  std::uint32_t needs, const SurfaceOutput<Real>& surfaces);
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_SPHERE_SURFACE_H_

@@ -1,4 +1,4 @@
-// Lists, forces and names the SIMD targets that the kernels are compiled for.
+// The SIMD targets that the kernels are compiled for.
 //
 // Names are Highway's in lower case (ssse3, sse4, avx2, avx3, avx3_dl, neon, ...). Highway's own
 // one-lane fallback is called hwy_scalar, because `scalar` names the baseline in src/scalar.
@@ -6,27 +6,22 @@
 #define SHEAF_SIMD_TARGET_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sheaf::simd {
 
-// Targets the kernels were compiled for, best first.
-std::vector<std::string> CompiledTargets();
+// Highway's bits of the targets that the kernels were compiled for, best first.
+std::vector<std::int64_t> CompiledTargets();
 
 // Those of them that this processor runs, best first; never empty.
-std::vector<std::string> UsableTargets();
+std::vector<std::int64_t> UsableTargets();
 
-// Every later kernel call of the process runs `name` ("auto": the best usable). Returns false, and
-// changes nothing, where the target is unknown or not usable. Not to be called while kernels run.
-bool ForceTarget(std::string_view name);
+std::string TargetName(std::int64_t target);
 
-// The name of the target that a kernel call runs on now, as reported from inside such a call.
-std::string RunningTarget();
-
-// float lanes a vector on the running target.
-std::size_t RunningLanes();
+// Where Highway's tables have the usable target, or the best where `target` is 0.
+std::size_t DispatchIndex(std::int64_t target);
 
 }  // namespace sheaf::simd
 

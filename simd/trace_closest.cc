@@ -57,16 +57,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::SHEAF_SIMD {
-
 SHEAF_EXPORT(TraceClosest);
-
-template <typename Real>
-void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
-                  const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
-                  const HitOutput<Real>& hits) {
-  SHEAF_DISPATCH(Real, TraceClosest)(tree, rays, intervals, count, coherence, hits);
-}
-SHEAF_INSTANTIATE(TraceClosest);
-
 }  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

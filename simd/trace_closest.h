@@ -2,12 +2,11 @@
 #ifndef SHEAF_SIMD_TRACE_CLOSEST_H_
 #define SHEAF_SIMD_TRACE_CLOSEST_H_
 
-#include "simd/arithmetic.h"
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
 // Writes hits[0, count). Rays may be in any order and of any coherence, whatever `coherence` says;
 // equal t goes to the lowest primitive id. A ray with a component that is not finite, without a
@@ -15,10 +14,10 @@ namespace sheaf::SHEAF_SIMD {
 // with t_min < 0, are tested against every primitive. Bits: as sheaf::scalar::TraceClosest, on
 // every target. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void TraceClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
-                  const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
-                  const HitOutput<Real>& hits);
+using TraceClosestKernel = void(const TreeView<Real>& tree, const RayView<Real>& rays,
+                                const RayIntervals<Real>& intervals, std::uint32_t count,
+                                Coherence coherence, const HitOutput<Real>& hits);
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_TRACE_CLOSEST_H_

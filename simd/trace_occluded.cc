@@ -46,16 +46,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::SHEAF_SIMD {
-
 SHEAF_EXPORT(TraceOccluded);
-
-template <typename Real>
-void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
-                   const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
-                   std::uint32_t* occluded) {
-  SHEAF_DISPATCH(Real, TraceOccluded)(tree, rays, intervals, count, coherence, occluded);
-}
-SHEAF_INSTANTIATE(TraceOccluded);
-
 }  // namespace sheaf::SHEAF_SIMD
 #endif  // HWY_ONCE

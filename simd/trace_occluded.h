@@ -2,20 +2,19 @@
 #ifndef SHEAF_SIMD_TRACE_OCCLUDED_H_
 #define SHEAF_SIMD_TRACE_OCCLUDED_H_
 
-#include "simd/arithmetic.h"
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
 
-namespace sheaf::SHEAF_SIMD {
+namespace sheaf {
 
 // Writes occluded[0, count): 1 where some primitive lies within the ray's interval, else 0. The
 // rays as in TraceClosest. Reads and writes PaddedCount(count) lanes.
 template <typename Real>
-void TraceOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
-                   const RayIntervals<Real>& intervals, std::uint32_t count, Coherence coherence,
-                   std::uint32_t* occluded);
+using TraceOccludedKernel = void(const TreeView<Real>& tree, const RayView<Real>& rays,
+                                 const RayIntervals<Real>& intervals, std::uint32_t count,
+                                 Coherence coherence, std::uint32_t* occluded);
 
-}  // namespace sheaf::SHEAF_SIMD
+}  // namespace sheaf
 
 #endif  // SHEAF_SIMD_TRACE_OCCLUDED_H_

@@ -102,16 +102,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sheaf::simd {
-
 SHEAF_EXPORT(TriangleSurfaces);
-
-template <typename Real>
-void TriangleSurfaces(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
-                      const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
-                      const SurfaceOutput<Real>& surfaces) {
-  SHEAF_DISPATCH(Real, TriangleSurfaces)(triangles, rays, hits, batch, needs, surfaces);
-}
-SHEAF_INSTANTIATE(TriangleSurfaces);
-
 }  // namespace sheaf::simd
 #endif  // HWY_ONCE

@@ -11,12 +11,12 @@
 namespace sheaf {
 namespace {
 
-Film RenderSmall(const Scene& scene, Engine engine) {
+Film RenderSmall(const Scene& scene, Target target) {
   RenderOptions options;
   options.width = 64;
   options.height = 48;
   options.max_depth = scene.settings.max_depth;
-  options.engine = engine;
+  options.target = target;
   Result<Film> film = Render(scene, scene.cameras.at(0), options);
   REQUIRE(film.ok());
   return std::move(film).value();
@@ -45,7 +45,7 @@ TEST_CASE("frame scenes have the same bits on every target") {
   for (const bench::FrameScene& frame : bench::FrameScenes()) {
     CAPTURE(frame.name);
     const Scene scene = frame.make();
-    const Film scalar = RenderSmall(scene, Engine::kScalar);
+    const Film scalar = RenderSmall(scene, Target::Scalar());
     // Something is there: not all of it is background.
     const float background = static_cast<float>(scene.settings.background.x);
     int shown = 0;
@@ -66,8 +66,7 @@ TEST_CASE("a written scene is read back to the very numbers") {
     const Result<Scene> read = ParseSceneJson(text, frame.name);
     REQUIRE(read.ok());
     CHECK(SceneJsonText(read.value()) == text);
-    CHECK(RenderSmall(read.value(), Engine::kSimd).rgb ==
-          RenderSmall(frame.make(), Engine::kSimd).rgb);
+    CHECK(RenderSmall(read.value(), Target()).rgb == RenderSmall(frame.make(), Target()).rgb);
   }
   // What those scenes lack.
   Scene scene;

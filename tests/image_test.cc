@@ -228,7 +228,8 @@ TEST_CASE("fast pictures are close to double precision") {
   options.precision = Precision::kDouble;
   for (const Camera& camera : scene.cameras) exact.push_back(RenderOrFail(scene, camera, options));
   options.precision = Precision::kFast;
-  ForEachTarget([&](const std::string&) {
+  ForEachTarget([&](Target target) {
+    options.target = target;
     int over = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Film film = RenderOrFail(scene, scene.cameras[i], options);
@@ -249,7 +250,7 @@ TEST_CASE("fast pictures are close to double precision") {
     CHECK(PixelsThatDiffer(RenderOrFail(scene, scene.cameras[0], options),
                            RenderOrFail(scene, scene.cameras[0], strict)) > 0);
   });
-  options.engine = Engine::kScalar;
+  options.target = Target::Scalar();
   const Result<Film> refused = Render(scene, scene.cameras[0], options);
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.error().kind == ErrorKind::kUsage);
@@ -258,10 +259,11 @@ TEST_CASE("fast pictures are close to double precision") {
 TEST_CASE("the front view at full size has the same bits on every target") {
   const Scene scene = CrystalBall();
   RenderOptions options;
-  options.engine = Engine::kScalar;
+  options.target = Target::Scalar();
   const Film scalar = RenderOrFail(scene, scene.cameras[0], options);
-  options.engine = Engine::kSimd;
-  ForEachTarget([&](const std::string&) {
+  options.target = Target();
+  ForEachTarget([&](Target target) {
+    options.target = target;
     CHECK(PixelsThatDiffer(RenderOrFail(scene, scene.cameras[0], options), scalar) == 0);
   });
 }
@@ -307,7 +309,8 @@ TEST_CASE("skipping changes no bit") {
     options.width = 80;
     options.height = 60;
     options.samples = 2;
-    ForEachTarget([&](const std::string&) {
+    ForEachTarget([&](Target target) {
+      options.target = target;
       options.skips = Skips::kOn;
       RenderStats on, off;
       const Film film = RenderOrFail(scene, scene.cameras[0], options, &on);
@@ -428,10 +431,11 @@ TEST_CASE("weights that overflow have the same bits on every target") {
   options.width = 8;
   options.height = 8;
   options.max_depth = 300;
-  options.engine = Engine::kScalar;
+  options.target = Target::Scalar();
   const Film scalar = RenderOrFail(scene, camera, options);
-  options.engine = Engine::kSimd;
-  ForEachTarget([&](const std::string&) {
+  options.target = Target();
+  ForEachTarget([&](Target target) {
+    options.target = target;
     CHECK(PixelsThatDiffer(RenderOrFail(scene, camera, options), scalar) == 0);
   });
 }
@@ -540,10 +544,13 @@ TEST_CASE("bands of any height have the same bits as the whole picture") {
   options.samples = 2;
   for (const Precision precision : {Precision::kStrict, Precision::kDouble}) {
     options.precision = precision;
-    options.engine = Engine::kScalar;
+    options.target = Target::Scalar();
     CheckBands(scene, options);
-    options.engine = Engine::kSimd;
-    ForEachTarget([&](const std::string&) { CheckBands(scene, options); });
+    options.target = Target();
+    ForEachTarget([&](Target target) {
+      options.target = target;
+      CheckBands(scene, options);
+    });
   }
 }
 
@@ -554,9 +561,9 @@ TEST_CASE("bands of a crop have the same bits as the crop") {
   options.height = 150;
   for (const PixelRect& crop : {PixelRect{13, 50, 44, 140}, PixelRect{199, 60, 200, 150}}) {
     options.crop = crop;
-    options.engine = Engine::kScalar;
+    options.target = Target::Scalar();
     CheckBands(scene, options);
-    options.engine = Engine::kSimd;
+    options.target = Target();
     CheckBands(scene, options);
   }
 }
@@ -688,9 +695,9 @@ TEST_CASE("options out of range are refused") {
 
 TEST_CASE("a stop during a pixel ends it") {
   const Scene scene = CrystalBall();
-  for (const Engine engine : {Engine::kScalar, Engine::kSimd}) {
+  for (const Target target : {Target::Scalar(), Target()}) {
     RenderOptions options;
-    options.engine = engine;
+    options.target = target;
     options.samples = kMaxSamples;  // hours, if it were not stopped
     options.threads = 1;
     RenderProgress progress;

@@ -5,18 +5,9 @@
 
 #include "bits.h"
 #include "random_scene.h"
-#include "simd/blend_vertices.h"
-#include "simd/face_light.h"
-#include "simd/generate_primary.h"
-#include "simd/generate_shadow.h"
 #include "simd/query.h"
-#include "simd/shade_ambient.h"
-#include "simd/shade_light.h"
 #include "simd/shading.h"
-#include "simd/spawn_rays.h"
-#include "simd/sphere_surface.h"
 #include "simd/streams.h"
-#include "simd/triangle_surface.h"
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
@@ -172,7 +163,8 @@ constexpr LightKind kLightKinds[] = {LightKind::kPointFromLight, LightKind::kPoi
 constexpr std::uint32_t kCounts[] = {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 32, 33, 200};
 
 TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
-  ForEachTarget([](const std::string&) {
+  ForEachTarget([](Target target) {
+    const Kernels<Real> kernels = StrictKernels<Real>(target.id());
     Camera camera;
     camera.eye = {1, 2, 3};
     camera.look_at = {-0.25, -1, -10};
@@ -188,7 +180,7 @@ TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
           x[i] = static_cast<Real>(i * 37 % 640), y[i] = static_cast<Real>(i * 53 % 479);
         }
         const Real sx = Real(0.5), sy = Real(0.3);
-        simd::GeneratePrimary(data, x.data(), y.data(), sx, sy, count, rays.output());
+        kernels.generate_primary(data, x.data(), y.data(), sx, sy, count, rays.output());
         const auto got = rays.view();
         for (std::uint32_t i = 0; i < count; ++i) {
           const Ray<Real> want = scalar::CameraRay(data, x[i], y[i], sx, sy);
@@ -202,7 +194,8 @@ TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
 }
 
 TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
-  ForEachTarget([](const std::string&) {
+  ForEachTarget([](Target target) {
+    const Kernels<Real> kernels = StrictKernels<Real>(target.id());
     Random random(4);
     Scene described = RandomScene(random, 24);
     described.materials[0].base_colour = Checker{};
@@ -236,12 +229,13 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
         }
         const HitBatch batch{ray.data(), local.data(), primitive.data(), count};
         if (shape == Shape::kSphere) {
-          simd::SphereSurfaces(geometry.spheres, rays.view(), hits.view(), batch, kNeedsAll,
-                               surfaces.output());
+          kernels.sphere_surfaces(geometry.spheres, rays.view(), hits.view(), batch, kNeedsAll,
+                                  surfaces.output());
         } else {
-          simd::TriangleSurfaces(geometry.triangles, rays.view(), hits.view(), batch, kNeedsAll,
+          kernels.triangle_surfaces(geometry.triangles, rays.view(), hits.view(), batch, kNeedsAll,
+                                    surfaces.output());
+          kernels.blend_vertices(geometry.triangles, hits.view(), batch, kNeedsAll,
                                  surfaces.output());
-          simd::BlendVertices(geometry.triangles, hits.view(), batch, kNeedsAll, surfaces.output());
         }
         const auto got = surfaces.view();
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -266,7 +260,8 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
 }
 
 TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, float, double) {
-  ForEachTarget([](const std::string&) {
+  ForEachTarget([](Target target) {
+    const Kernels<Real> kernels = StrictKernels<Real>(target.id());
     Random random(5);
     for (int round = 0; round < 60; ++round) {
       const std::uint32_t count = kCounts[round % 14];
@@ -286,15 +281,15 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
       AlignedArray<std::uint32_t> faces, surface_of_ray;
       faces.Allocate(StreamCapacity(count)), surface_of_ray.Allocate(StreamCapacity(count));
 
-      simd::ShadeAmbient(material, surfaces.view(), count, colours.output());
+      kernels.shade_ambient(material, surfaces.view(), count, colours.output());
       const std::uint32_t facing =
-          simd::FaceLight(light, material, surfaces.view(), count, faces.data());
-      const std::uint32_t shadows = simd::GenerateShadow(
+          kernels.face_light(light, material, surfaces.view(), count, faces.data());
+      const std::uint32_t shadows = kernels.generate_shadow(
           light, surfaces.view(), faces.data(), count, rays.output(), surface_of_ray.data());
       REQUIRE(shadows == facing);
       // Every third surface that faces the light is in shadow.
       for (std::uint32_t i = 0; i < count; i += 3) faces[i] = 0;
-      simd::ShadeLight(light, material, surfaces.view(), faces.data(), count, colours.output());
+      kernels.shade_light(light, material, surfaces.view(), faces.data(), count, colours.output());
 
       std::uint32_t ray = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
@@ -341,7 +336,8 @@ void CheckChildren(const std::vector<scalar::Path<Real>>& want,
 }
 
 TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
-  ForEachTarget([](const std::string&) {
+  ForEachTarget([](Target target) {
+    const Kernels<Real> kernels = StrictKernels<Real>(target.id());
     Random random(6);
     for (int round = 0; round < 60; ++round) {
       const std::uint32_t count = kCounts[round % 14];
@@ -362,9 +358,9 @@ TEST_CASE_TEMPLATE("reflection and refraction", Real, float, double) {
       auto view = parents.view();
       if (round % 2) view.throughput_r = view.throughput_g = view.throughput_b = nullptr;
       const Real min_throughput = round % 3 ? Real(0) : Real(0.25);
-      const SpawnCounts counts =
-          simd::SpawnRays(material, stream.view(), count, view, min_throughput, reflected.output(),
-                          reflected_paths.output(), refracted.output(), refracted_paths.output());
+      const SpawnCounts counts = kernels.spawn_rays(
+          material, stream.view(), count, view, min_throughput, reflected.output(),
+          reflected_paths.output(), refracted.output(), refracted_paths.output());
 
       std::vector<scalar::Path<Real>> want_reflected, want_refracted;
       std::vector<std::uint32_t> parent_of_reflected, parent_of_refracted;

@@ -8,8 +8,6 @@
 #include "random_scene.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/trace_closest.h"
-#include "simd/trace_occluded.h"
 #include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/trace_tree.h"
@@ -93,18 +91,20 @@ bool SameHit(const scalar::Hit<Real>& a, const scalar::Hit<Real>& b) {
   return same_t && SameBits(a.u, b.u) && SameBits(a.v, b.v) && a.primitive == b.primitive;
 }
 
-// The kernels on the target in force.
 template <typename Real>
-void CheckTraces(const Expected<Real>& want, std::uint32_t offset, Coherence coherence) {
+void CheckTraces(Target target, const Expected<Real>& want, std::uint32_t offset,
+                 Coherence coherence) {
+  const Kernels<Real> kernels = StrictKernels<Real>(target.id());
   RayBatch<Real> batch(want.rays, offset);
   HitStream<Real> hits;
   hits.Allocate(batch.count);
   AlignedArray<std::uint32_t> occluded;
   occluded.Allocate(StreamCapacity(batch.count));
   const TreeView<Real> tree = want.tree.view();
-  simd::TraceClosest(tree, batch.view(), batch.intervals(), batch.count, coherence, hits.output());
-  simd::TraceOccluded(tree, batch.view(), batch.intervals(), batch.count, coherence,
-                      occluded.data());
+  kernels.trace_closest(tree, batch.view(), batch.intervals(), batch.count, coherence,
+                        hits.output());
+  kernels.trace_occluded(tree, batch.view(), batch.intervals(), batch.count, coherence,
+                         occluded.data());
   const auto got = hits.view();
   std::uint32_t wrong_hits = 0, wrong_shadows = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -125,8 +125,8 @@ void CheckEverywhere(const Expected<Real>& want) {
     wrong += scalar::TraceOccluded(want.tree.view(), want.rays[i]) != want.occluded[i];
   }
   CHECK(wrong == 0);
-  ForEachTarget([&](const std::string&) {
-    for (const Coherence coherence : kHints) CheckTraces(want, 0, coherence);
+  ForEachTarget([&](Target target) {
+    for (const Coherence coherence : kHints) CheckTraces(target, want, 0, coherence);
   });
 }
 
@@ -144,9 +144,9 @@ TEST_CASE_TEMPLATE("every count and offset traces as the scalar specification", 
   const Scene scene = RandomScene(random, 12);
   for (std::uint32_t count = 1; count <= 2 * kMaxLanes + 1; ++count) {
     const Expected<Real> want(scene, RandomRays<Real>(random, count, 12));
-    ForEachTarget([&](const std::string&) {
+    ForEachTarget([&](Target target) {
       for (std::uint32_t offset = 0; offset < 4; ++offset) {
-        CheckTraces(want, offset, Coherence::kUnknown);
+        CheckTraces(target, want, offset, Coherence::kUnknown);
       }
     });
   }
@@ -444,11 +444,12 @@ TEST_CASE("a miss is t_max, no primitive and no parameters") {
     Scene scene = objects ? CrowdedScene(random, objects) : Scene{};
     for (Object& object : scene.objects) object.shape = Sphere{{20, 0, 0}, 1.0};
     const Expected<float> want(scene, rays);
-    ForEachTarget([&](const std::string&) {
+    ForEachTarget([&](Target target) {
       RayBatch<float> batch(rays, 0);
       HitStream<float> hits;
       hits.Allocate(5);
-      simd::TraceClosest(want.tree.view(), batch.view(), batch.intervals(), 5, Coherence::kUnknown,
+      StrictKernels<float>(target.id())
+          .trace_closest(want.tree.view(), batch.view(), batch.intervals(), 5, Coherence::kUnknown,
                          hits.output());
       for (int i = 0; i < 5; ++i) {
         CHECK(hits.view().t[i] == 7.0f);

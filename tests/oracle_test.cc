@@ -13,7 +13,6 @@
 #include "simd/roundoffs.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
-#include "simd/triangle_surface.h"
 #include "src/bvh/build_tree.h"
 #include "targets.h"
 
@@ -219,8 +218,8 @@ void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
     }
     traced.ForEachNormal(
         [&](const HitBatch& batch, const SurfaceOutput<Real>& surfaces) {
-          simd::TriangleSurfaces(traced.scene.geometry().triangles, traced.rays.view(),
-                                 traced.hits.view(), batch, kNeedsAll, surfaces);
+          kernels.triangle_surfaces(traced.scene.geometry().triangles, traced.rays.view(),
+                                    traced.hits.view(), batch, kNeedsAll, surfaces);
         },
         [&](std::uint32_t i, Vec3<Real> normal) {
           measured.triangle_normal.Add(AngleTo(normal, IntersectExactly(rays[i], v).normal));
@@ -373,14 +372,14 @@ std::string Describe(const std::string& name, const Measured& m) {
 }
 
 TEST_CASE("errors by arithmetic and target") {
-  const Measured in_double = Measure(StrictKernels<double>());
+  const Measured in_double = Measure(StrictKernels<double>(0));
   std::vector<Measured> strict;
   std::string table;
-  ForEachTarget([&](const std::string& target) {
-    strict.push_back(Measure(StrictKernels<float>()));
+  ForEachTarget([&](Target target) {
+    strict.push_back(Measure(StrictKernels<float>(target.id())));
     CHECK(strict.back() == strict.front());
-    const Measured fast = Measure(FastKernels());
-    table += Describe("fast, " + target, fast) + "\n";
+    const Measured fast = Measure(FastKernels(target.id()));
+    table += Describe("fast, " + target.name(), fast) + "\n";
     // No promises are made for it: that it is no worse than its documentation says.
     CHECK(fast.sphere_t.worst < 200);
     CHECK(fast.sphere_normal.mean() < 0.01);

@@ -39,13 +39,13 @@ inline bool IsFinite(const Film& film) {
 // Renders on every target, with 1 and 2 threads, in tiles of several sizes and as crops, and
 // compares with the scalar baseline.
 inline void CheckSameBits(const Scene& scene, const Camera& camera, RenderOptions options) {
-  options.engine = Engine::kScalar;
+  options.target = Target::Scalar();
   RenderStats scalar_stats;
   const Film scalar = RenderOrFail(scene, camera, options, &scalar_stats);
   REQUIRE(scalar_stats.target == "scalar");
   CHECK(IsFinite(scalar));
-  options.engine = Engine::kSimd;
-  ForEachTarget([&](const std::string& name) {
+  ForEachTarget([&](Target target) {
+    options.target = target;
     for (const int threads : {1, 2}) {
       for (const int tile : {32, 7, 64}) {
         options.threads = threads;
@@ -53,7 +53,7 @@ inline void CheckSameBits(const Scene& scene, const Camera& camera, RenderOption
         RenderStats stats;
         const Film film = RenderOrFail(scene, camera, options, &stats);
         CHECK(PixelsThatDiffer(film, scalar) == 0);
-        CHECK(stats.target == name);
+        CHECK(stats.target == target.name());
         // A tile's neighbours are sampled with it: their rays depend on the tiles.
         if (options.contrast) continue;
         CHECK(stats.rays.shadow == scalar_stats.rays.shadow);

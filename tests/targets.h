@@ -6,25 +6,26 @@
 
 #include <string>
 
-#include "simd/target.h"
+#include "sheaf/target.h"
+#include "simd/kernels.h"
+#include "src/core/running_target.h"
 
 namespace sheaf {
 
-// Forces each target in turn around `body(name)`. Checks, before and after, the name that code
-// compiled for the target reports: a forced target that silently runs another is the classic false
-// green.
+// Calls body(target) for each target in turn. Checks the name that code compiled for the target
+// reports: a chosen target that silently runs another is the classic false green.
 template <typename Body>
 void ForEachTarget(Body body) {
   int targets = 0;
-  for (const std::string& name : simd::UsableTargets()) {
+  for (const std::string& name : UsableTargets()) {
     CAPTURE(name);
-    REQUIRE(simd::ForceTarget(name));
-    REQUIRE(simd::RunningTarget() == name);
-    body(name);
-    REQUIRE(simd::RunningTarget() == name);
+    const std::optional<Target> target = Target::Named(name);
+    REQUIRE(target.has_value());
+    REQUIRE(target->name() == name);
+    REQUIRE(RunningTarget(*target) == name);
+    body(*target);
     ++targets;
   }
-  REQUIRE(simd::ForceTarget("auto"));
   REQUIRE(targets >= 2);
 }
 

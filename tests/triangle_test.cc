@@ -15,7 +15,6 @@
 #include "exact.h"
 #include "random_scene.h"
 #include "simd/query.h"
-#include "simd/trace_closest.h"
 #include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/scalar/trace.h"
@@ -62,8 +61,8 @@ int CountLeaks(const GeometryView<float>& geometry, const std::vector<Ray<float>
   return leaks;
 }
 
-int CountKernelLeaks(const TreeView<float>& tree, const std::vector<Ray<float>>& rays,
-                     float t_max) {
+int CountKernelLeaks(Target target, const TreeView<float>& tree,
+                     const std::vector<Ray<float>>& rays, float t_max) {
   const auto count = static_cast<std::uint32_t>(rays.size());
   RayStream<float> stream;
   HitStream<float> hits;
@@ -75,7 +74,8 @@ int CountKernelLeaks(const TreeView<float>& tree, const std::vector<Ray<float>>&
     out.direction_x[i] = rays[i].direction.x, out.direction_y[i] = rays[i].direction.y;
     out.direction_z[i] = rays[i].direction.z;
   }
-  simd::TraceClosest(tree, stream.view(), RayIntervals<float>{}, count, Coherence::kUnknown,
+  StrictKernels<float>(target.id())
+      .trace_closest(tree, stream.view(), RayIntervals<float>{}, count, Coherence::kUnknown,
                      hits.output());
   int leaks = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -90,8 +90,9 @@ void CheckNoLeaks(const Mesh& mesh, const std::vector<Ray<float>>& rays, float t
   const Result<Tree<float>> tree = BuildTree<float>(scene.geometry());
   REQUIRE(tree);
   CHECK(CountLeaks(scene.geometry(), rays, t_max) == 0);
-  ForEachTarget(
-      [&](const std::string&) { CHECK(CountKernelLeaks(tree.value().view(), rays, t_max) == 0); });
+  ForEachTarget([&](Target target) {
+    CHECK(CountKernelLeaks(target, tree.value().view(), rays, t_max) == 0);
+  });
 }
 
 // A grid of n x n unit cells, two triangles each, in the plane across `axis`.

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "sheaf/render.h"
+#include "sheaf/target.h"
 #include "sheaf/version.h"
-#include "simd/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
 #include "src/app/json_text.h"
@@ -48,7 +48,7 @@ Result<RenderStats> RenderOnce(const Scene& scene, const Camera& camera, RenderO
                                Row& row) {
   if (const Status chosen = ChooseTarget(row.target, options); !chosen) return chosen.error();
   options.threads = row.threads;
-  if (options.engine == Engine::kSimd) row.lanes = simd::RunningLanes();
+  row.lanes = static_cast<std::size_t>(options.target.lanes());
   FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
   const RowSink drop = [](const Film&) { return Status(Done{}); };
   RenderStats stats;

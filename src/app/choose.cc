@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "simd/target.h"
 #include "src/app/open_scene.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
@@ -40,8 +39,8 @@ Error UnknownName(std::string_view option, std::string_view kind, const std::str
 // Why `target` does not run, with `choices` of the option before the usable ones.
 Error UnusableTarget(std::string_view option, const std::string& target,
                      std::vector<std::string> choices) {
-  for (std::string& usable : simd::UsableTargets()) choices.push_back(std::move(usable));
-  const std::vector<std::string> compiled = simd::CompiledTargets();
+  for (std::string& usable : UsableTargets()) choices.push_back(std::move(usable));
+  const std::vector<std::string> compiled = CompiledTargets();
   if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
     return Usage(fmt::format("{}: this processor does not run \"{}\" (usable: {})", option, target,
                              fmt::join(choices, ", ")));
@@ -72,14 +71,16 @@ std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
   return names;
 }
 
-Status ChooseTarget(const std::string& target) {
-  if (target == "scalar" || simd::ForceTarget(target)) return Done{};
+Result<Target> ChooseTarget(const std::string& target) {
+  if (const std::optional<Target> named = Target::Named(target)) return *named;
   return UnusableTarget("--target", target, {"auto", "scalar"});
 }
 
 Status ChooseTarget(const std::string& target, RenderOptions& options) {
-  options.engine = target == "scalar" ? Engine::kScalar : Engine::kSimd;
-  return ChooseTarget(target);
+  const Result<Target> chosen = ChooseTarget(target);
+  if (!chosen) return chosen.error();
+  options.target = chosen.value();
+  return Done{};
 }
 
 Precision PrecisionOf(const std::string& name) {
@@ -100,7 +101,7 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
 }
 
 Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names) {
-  const std::vector<std::string> usable = simd::UsableTargets();
+  const std::vector<std::string> usable = UsableTargets();
   std::vector<std::string> every = {"scalar"};
   every.insert(every.end(), usable.begin(), usable.end());
   std::vector<std::string> targets;

@@ -22,10 +22,10 @@ bool IsSameFile(const std::string& a, const std::string& b);
 // Names between commas, without a blank or a double among them.
 std::optional<std::vector<std::string>> ParseNames(const std::string& text);
 
-// Makes SIMD kernels run `target`; "scalar", which runs none, is fine too.
-Status ChooseTarget(const std::string& target);
+// The target that --target names; kUsage where this processor does not run it.
+Result<Target> ChooseTarget(const std::string& target);
 
-// The same for one frame, whose engine it sets.
+// The same, into a frame's options.
 Status ChooseTarget(const std::string& target, RenderOptions& options);
 
 // "strict", "fast" or "double".

@@ -12,11 +12,11 @@
 
 #include "sheaf/scene.h"
 #include "sheaf/version.h"
-#include "simd/target.h"
 #include "src/app/json_text.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/core/build_info.h"
+#include "src/core/running_target.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -37,17 +37,17 @@ std::string ProcessorModel() {
 Json VectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json MachineJson() {
-  std::vector<std::string> usable = simd::UsableTargets();
+  std::vector<std::string> usable = UsableTargets();
   usable.push_back("scalar");
   return {
       {"sheaf",
        {{"version", kVersion}, {"compiler", CompilerName()}, {"build_type", BuildTypeName()}}},
       {"processor", {{"model", ProcessorModel()}, {"cores", std::thread::hardware_concurrency()}}},
       {"targets",
-       {{"compiled", simd::CompiledTargets()},
+       {{"compiled", CompiledTargets()},
         {"usable", usable},
-        {"chosen", simd::RunningTarget()},
-        {"lanes", simd::RunningLanes()}}},
+        {"chosen", RunningTarget(Target())},
+        {"lanes", Target().lanes()}}},
   };
 }
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "sheaf/render.h"
-#include "simd/target.h"
+#include "sheaf/target.h"
 #include "src/app/add_options.h"
 #include "src/app/interrupt.h"
 #include "src/app/pareto_report.h"
@@ -49,7 +49,7 @@ struct Setting {
 
 // All trades on the best target; sample counts alone in double, and on every other target.
 std::vector<Setting> ListSettings(const RenderOptions& base) {
-  const std::vector<std::string> usable = simd::UsableTargets();
+  const std::vector<std::string> usable = UsableTargets();
   std::vector<int> depths = {base.max_depth};
   for (const int less : {2, 3}) {
     if (less < base.max_depth) depths.push_back(less);
@@ -126,7 +126,7 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
                     false};
   point.sampling = point.error;
   if (setting.options.precision == Precision::kDouble) return point;
-  setting.target = simd::UsableTargets().front();
+  setting.target = UsableTargets().front();
   setting.options.precision = Precision::kDouble;
   setting.options.threads = 0;
   const Result<Timed> exact = RenderTimed(scene, camera, setting);
@@ -177,7 +177,7 @@ void Say(const ParetoRequest& request, const std::string& line) {
 Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, const Scene& scene,
                                                const Camera& camera, const RenderOptions& base,
                                                int repetitions) {
-  Setting reference{simd::UsableTargets().front(), base};
+  Setting reference{UsableTargets().front(), base};
   reference.options.precision = Precision::kDouble;
   reference.options.samples = request.reference_samples.value_or(256);
   reference.options.threads = 0;

@@ -44,7 +44,7 @@ Status CheckRequest(const RenderRequest& request) {
   if (request.crop && request.tile.parts > 0) {
     return Usage("--tile, --crop: a part of the picture is one or the other");
   }
-  if (const Status chosen = ChooseTarget(request.target); !chosen) return chosen;
+  if (const auto chosen = ChooseTarget(request.target); !chosen) return chosen.error();
 
   // Where the field stands in the folder's name, PlanFrames checks each folder.
   const std::string folder = request.output.substr(0, request.output.rfind('/') + 1);
@@ -99,9 +99,9 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.contrast = request.contrast;
   options.min_throughput = request.min_throughput.value_or(0);
   options.crop = request.crop;
-  options.engine = request.target == "scalar" ? Engine::kScalar : Engine::kSimd;
+  if (const Status chosen = ChooseTarget(request.target, options); !chosen) return chosen.error();
   options.precision = PrecisionOf(request.precision);
-  if (options.precision == Precision::kFast && options.engine == Engine::kScalar) {
+  if (options.precision == Precision::kFast && options.target.is_scalar()) {
     return Usage("--precision fast: needs a SIMD target, not --target scalar");
   }
   options.threads = request.threads.value_or(options.threads);

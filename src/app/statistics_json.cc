@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 Json SecondsJson(const FrameRecord& frame) {
   Json seconds = {{"wall", frame.stats.wall_seconds}, {"compile", frame.stats.compile_seconds}};
   // The scalar baseline traces ray by ray and has no phases to time.
-  if (frame.options.engine == Engine::kScalar) return seconds;
+  if (frame.options.target.is_scalar()) return seconds;
   Json& phases = seconds["phases"] = Json::object();
   for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
     phases[PhaseName(static_cast<Phase>(i))] = frame.stats.phase_seconds[i];
@@ -63,7 +63,7 @@ Json FrameJson(const FrameRecord& frame) {
       {"seconds", SecondsJson(frame)},
       {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
   };
-  if (options.engine != Engine::kScalar) json["lane_use"] = LaneUseJson(stats);
+  if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_throughput"] = options.min_throughput;
   if (options.crop) {

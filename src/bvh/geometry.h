@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sheaf/error.h"
+#include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
@@ -79,6 +80,7 @@ class Geometry {
 struct TraceOptions {
   RayIntervals<float> intervals;
   Coherence coherence = Coherence::kUnknown;
+  Target target;  // what computes it; the bits are the same on all
 };
 
 // What TraceClosest fills, `count` elements each; fields that are null are left out.

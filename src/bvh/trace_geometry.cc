@@ -2,11 +2,11 @@
 // place, the rest through a padded copy.
 #include <algorithm>
 
+#include "simd/kernels.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/trace_closest.h"
-#include "simd/trace_occluded.h"
 #include "src/bvh/geometry.h"
+#include "src/scalar/trace_tree.h"
 
 namespace sheaf {
 namespace {
@@ -67,6 +67,50 @@ class PaddedRays {
   RayIntervals<float> intervals_;
 };
 
+scalar::Ray<float> RayAt(const RayView<float>& rays, const RayIntervals<float>& intervals,
+                         std::uint32_t i) {
+  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
+          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+          rays.source ? rays.source[i] : kNoPrimitive,
+          intervals.t_min ? intervals.t_min[i] : intervals.all_t_min,
+          intervals.t_max ? intervals.t_max[i] : intervals.all_t_max};
+}
+
+// The baseline, as the kernels are called.
+void ScalarClosest(const TreeView<float>& tree, const RayView<float>& rays,
+                   const RayIntervals<float>& intervals, std::uint32_t count,
+                   Coherence /*coherence*/, const HitOutput<float>& hits) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const scalar::Hit<float> hit = scalar::TraceClosest(tree, RayAt(rays, intervals, i));
+    hits.t[i] = hit.t;
+    hits.u[i] = hit.u;
+    hits.v[i] = hit.v;
+    hits.primitive[i] = hit.primitive;
+  }
+}
+
+void ScalarOccluded(const TreeView<float>& tree, const RayView<float>& rays,
+                    const RayIntervals<float>& intervals, std::uint32_t count,
+                    Coherence /*coherence*/, std::uint32_t* occluded) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    occluded[i] = scalar::TraceOccluded(tree, RayAt(rays, intervals, i)) ? 1 : 0;
+  }
+}
+
+struct TraceKernels {
+  TraceClosestKernel<float>* closest;
+  TraceOccludedKernel<float>* occluded;
+};
+
+TraceKernels KernelsOf(Target target) {
+  if (target.is_scalar()) return {&ScalarClosest, &ScalarOccluded};
+  // Looked up once: a batch may be one ray.
+  static const Kernels<float> best = StrictKernels<float>(0);
+  if (target == Target()) return {best.trace_closest, best.trace_occluded};
+  const Kernels<float> kernels = StrictKernels<float>(target.id());
+  return {kernels.trace_closest, kernels.trace_occluded};
+}
+
 struct HitScratch {
   float t[kChunk], u[kChunk], v[kChunk];
   std::uint32_t primitive[kChunk];
@@ -89,11 +133,12 @@ void FindObjects(const Geometry& geometry, const std::uint32_t* primitive, std::
 
 // At most kChunk rays, and whole vectors of them.
 void TraceChunk(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
-                const HitArrays& hits, const TraceOptions& options, HitScratch& scratch) {
+                const HitArrays& hits, const TraceOptions& options, const TraceKernels& kernels,
+                HitScratch& scratch) {
   const HitOutput<float> output = {hits.t ? hits.t : scratch.t, hits.u ? hits.u : scratch.u,
                                    hits.v ? hits.v : scratch.v,
                                    hits.primitive ? hits.primitive : scratch.primitive};
-  simd::TraceClosest(geometry.tree(), rays, options.intervals, count, options.coherence, output);
+  kernels.closest(geometry.tree(), rays, options.intervals, count, options.coherence, output);
   if (hits.object) FindObjects(geometry, output.primitive, count, hits.object);
 }
 
@@ -102,6 +147,7 @@ void TraceChunk(const Geometry& geometry, const RayView<float>& rays, std::uint3
 void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
                   const HitArrays& hits, const TraceOptions& options) {
   HitScratch scratch;
+  const TraceKernels kernels = KernelsOf(options.target);
   const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
   const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
   const std::uint32_t step = has_all ? whole : kChunk;
@@ -112,7 +158,8 @@ void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uin
   for (std::uint32_t first = 0; first < whole;) {
     const std::uint32_t n = std::min(step, whole - first);
     TraceChunk(geometry, Skip(rays, first), n, hits_from(first),
-               {Skip(options.intervals, first), options.coherence}, scratch);
+               {Skip(options.intervals, first), options.coherence, options.target}, kernels,
+               scratch);
     first += n;
   }
   const std::uint32_t rest = count - whole;
@@ -120,7 +167,7 @@ void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uin
   const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
   std::uint32_t object[kMaxLanes];
   TraceChunk(geometry, padded.view(), rest, {.object = hits.object ? object : nullptr},
-             {padded.intervals(), options.coherence}, scratch);
+             {padded.intervals(), options.coherence, options.target}, kernels, scratch);
   const auto copy = [&](const auto* from, auto* to) {
     if (to) std::copy(from, from + rest, to + whole);
   };
@@ -133,17 +180,17 @@ void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uin
 
 void TraceOccluded(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
                    std::uint32_t* occluded, const TraceOptions& options) {
+  const TraceKernels kernels = KernelsOf(options.target);
   const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
   if (whole > 0) {
-    simd::TraceOccluded(geometry.tree(), rays, options.intervals, whole, options.coherence,
-                        occluded);
+    kernels.occluded(geometry.tree(), rays, options.intervals, whole, options.coherence, occluded);
   }
   const std::uint32_t rest = count - whole;
   if (rest == 0) return;
   const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
   std::uint32_t lanes[kMaxLanes];
-  simd::TraceOccluded(geometry.tree(), padded.view(), padded.intervals(), rest, options.coherence,
-                      lanes);
+  kernels.occluded(geometry.tree(), padded.view(), padded.intervals(), rest, options.coherence,
+                   lanes);
   std::copy(lanes, lanes + rest, occluded + whole);
 }
 

@@ -21,18 +21,18 @@ namespace {
 // The film by the scalar baseline; `report` learns where a target has other bits, and of pixels
 // that are not finite.
 Film RenderEverywhere(Report& report, const Scene& scene, RenderOptions options) {
-  options.engine = Engine::kScalar;
+  options.target = Target::Scalar();
   const Result<Film> expected = Render(scene, scene.cameras.at(0), options);
   report.Expect(expected.ok(), "the frame does not render");
   if (!expected) return {};
   for (const float value : expected.value().rgb) {
     report.Expect(std::isfinite(value), "a pixel is not finite");
   }
-  options.engine = Engine::kSimd;
-  ForEachTarget(report, [&](const std::string& target) {
+  ForEachTarget(report, [&](Target target) {
+    options.target = target;
     const Result<Film> film = Render(scene, scene.cameras.at(0), options);
     const bool same = film && CompareFilms(expected.value(), film.value(), 0).pixels == 0;
-    report.Expect(same, target + " has other bits than src/scalar");
+    report.Expect(same, target.name() + " has other bits than src/scalar");
   });
   return expected.value();
 }

@@ -9,10 +9,10 @@
 
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "simd/target.h"
 #include "simd/tree.h"
 #include "src/bvh/geometry.h"
 #include "src/core/has_area.h"
+#include "src/core/running_target.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf::stress {
@@ -56,13 +56,14 @@ std::string HitText(const Hit& hit) {
 }
 
 // The kernels of the target in force against `expected`.
-void CheckKernels(Report& report, const std::string& target, const Geometry& geometry,
+void CheckKernels(Report& report, Target target, const Geometry& geometry,
                   const std::vector<Ray>& rays, const FlatRays& flat,
                   const std::vector<Hit>& expected) {
   const auto count = static_cast<std::uint32_t>(rays.size());
   std::vector<float> t(count), u(count), v(count);
   std::vector<std::uint32_t> primitive(count), occluded(count);
   TraceOptions options;
+  options.target = target;
   options.intervals.t_min = flat.t_min.data();
   options.intervals.t_max = flat.t_max.data();
   TraceClosest(geometry, flat.view(), count,
@@ -73,12 +74,13 @@ void CheckKernels(Report& report, const std::string& target, const Geometry& geo
     const Hit found{t[i], primitive[i], u[i], v[i]};
     if (!SameHit(found, expected[i])) {
       report.Expect(false,
-                    fmt::format("{} finds {} and src/scalar {}", target, HitText(found),
+                    fmt::format("{} finds {} and src/scalar {}", target.name(), HitText(found),
                                 HitText(expected[i])),
                     &rays[i]);
     }
     if ((occluded[i] != 0) != IsHit(expected[i])) {
-      report.Expect(false, fmt::format("{}: occlusion is not that of the nearest hit", target),
+      report.Expect(false,
+                    fmt::format("{}: occlusion is not that of the nearest hit", target.name()),
                     &rays[i]);
     }
   }
@@ -197,13 +199,12 @@ GeometryView<float> FlatShapes::view() const {
 
 bool IsHit(const Hit& hit) { return hit.primitive != kNoPrimitive; }
 
-void ForEachTarget(Report& report, const std::function<void(const std::string& name)>& body) {
-  for (const std::string& target : simd::UsableTargets()) {
-    const bool forced = simd::ForceTarget(target);
-    report.Expect(forced && simd::RunningTarget() == target, target + " does not run");
-    body(target);
+void ForEachTarget(Report& report, const std::function<void(Target target)>& body) {
+  for (const std::string& name : UsableTargets()) {
+    const std::optional<Target> target = Target::Named(name);
+    report.Expect(target && RunningTarget(*target) == name, name + " does not run");
+    if (target) body(*target);
   }
-  simd::ForceTarget("auto");
 }
 
 std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
@@ -228,7 +229,7 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
     report.Expect(SameHit(by_tree, expected.back()),
                   "the baseline's tree differs from every primitive", &ray);
   }
-  ForEachTarget(report, [&](const std::string& target) {
+  ForEachTarget(report, [&](Target target) {
     CheckKernels(report, target, geometry.value(), rays, flat_rays, expected);
   });
   if (report.replay()) {

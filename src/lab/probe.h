@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sheaf/target.h"
 #include "simd/tree.h"
 #include "src/lab/stress.h"
 #include "src/scalar/trace.h"
@@ -55,8 +56,8 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes, const std
 
 bool IsHit(const Hit& hit);
 
-// Forces each usable target in turn around `body(name)`; `report` learns where another one ran.
-void ForEachTarget(Report& report, const std::function<void(const std::string& name)>& body);
+// Calls body(target) for each usable target; `report` learns where another one runs.
+void ForEachTarget(Report& report, const std::function<void(Target target)>& body);
 
 }  // namespace sheaf::stress
 

@@ -12,10 +12,10 @@
 
 #include "simd/query.h"
 #include "simd/shading.h"
-#include "simd/target.h"
 #include "simd/tree.h"
 #include "src/bvh/build_tree.h"
 #include "src/core/parallel.h"
+#include "src/core/running_target.h"
 #include "src/render/band_queue.h"
 #include "src/render/compile_scene.h"
 #include "src/render/sample_pattern.h"
@@ -263,9 +263,9 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
   stats.spheres = compiled.sphere_count;
   stats.triangles = compiled.triangle_count;
   stats.primitives = compiled.sphere_count + compiled.triangle_count;
-  stats.target = options.engine == Engine::kScalar ? "scalar" : simd::RunningTarget();
+  stats.target = RunningTarget(options.target);
 
-  return options.engine == Engine::kScalar
+  return options.target.is_scalar()
              ? RenderBands<ScalarTileRenderer<Real>>(frame, area, options, sink, stats, progress)
              : RenderBands<TileRenderer<Real>>(frame, area, options, sink, stats, progress);
 }
@@ -290,7 +290,7 @@ std::string Complaint(const RenderOptions& options) {
   if (options.contrast && !(*options.contrast >= 0 && *options.contrast <= 1)) {
     return "contrast must lie in [0, 1]";
   }
-  if (options.precision == Precision::kFast && options.engine == Engine::kScalar) {
+  if (options.precision == Precision::kFast && options.target.is_scalar()) {
     return "fast precision needs a SIMD target";
   }
   if (options.crop) {

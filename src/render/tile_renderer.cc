@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "simd/blend_vertices.h"
-#include "simd/face_light.h"
-#include "simd/generate_primary.h"
-#include "simd/generate_shadow.h"
 #include "simd/query.h"
-#include "simd/shade_ambient.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
-#include "simd/triangle_surface.h"
 #include "src/core/even_bits.h"
 #include "src/render/store_layers.h"
 #include "src/render/tint_surfaces.h"
@@ -125,11 +119,11 @@ void TileRenderer<Real>::ShadeBin(const RayQueue<Real>& queue, const HitBin& bin
     kernels_.sphere_surfaces(frame_.geometry.spheres, rays, hits_.view(), bin.batch, material.needs,
                              surfaces_.output());
   } else {
-    simd::TriangleSurfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch, material.needs,
-                           surfaces_.output());
+    kernels_.triangle_surfaces(frame_.geometry.triangles, rays, hits_.view(), bin.batch,
+                               material.needs, surfaces_.output());
     if (material.needs & (kNeedsNormals | kNeedsTint)) {
-      simd::BlendVertices(frame_.geometry.triangles, hits_.view(), bin.batch, material.needs,
-                          surfaces_.output());
+      kernels_.blend_vertices(frame_.geometry.triangles, hits_.view(), bin.batch, material.needs,
+                              surfaces_.output());
     }
   }
   const bool has_faces = bin.shape == ShapeKind::kTriangle && (material.needs & kNeedsNormals) != 0;
@@ -141,7 +135,7 @@ void TileRenderer<Real>::ShadeBin(const RayQueue<Real>& queue, const HitBin& bin
   if (layered_ && depth == 0) RecordLayers(bin, material);
   Charge(Phase::kSurface, bin.batch.count, bin.batch.count);
 
-  simd::ShadeAmbient(material, surfaces, bin.batch.count, surface_colours_.output());
+  kernels_.shade_ambient(material, surfaces, bin.batch.count, surface_colours_.output());
   Charge(Phase::kShade, bin.batch.count, bin.batch.count);
   if (material.needs & kNeedsLights) ShadeLights(material, surfaces, bin.batch.count);
 
@@ -164,7 +158,7 @@ template <typename Real>
 void TileRenderer<Real>::ShadeLights(const MaterialData<Real>& material,
                                      const SurfaceView<Real>& surfaces, std::uint32_t count) {
   for (const LightData<Real>& light : frame_.lights) {
-    const std::uint32_t facing = simd::FaceLight(light, material, surfaces, count, lit_.data());
+    const std::uint32_t facing = kernels_.face_light(light, material, surfaces, count, lit_.data());
     Charge(Phase::kShade, count, count);
     if (facing == 0) continue;
     const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
@@ -178,8 +172,8 @@ template <typename Real>
 std::uint32_t TileRenderer<Real>::FindShadows(const LightData<Real>& light,
                                               const SurfaceView<Real>& surfaces,
                                               std::uint32_t count) {
-  const std::uint32_t size = simd::GenerateShadow(light, surfaces, lit_.data(), count,
-                                                  shadow_rays_.output(), surface_of_ray_.data());
+  const std::uint32_t size = kernels_.generate_shadow(
+      light, surfaces, lit_.data(), count, shadow_rays_.output(), surface_of_ray_.data());
   rays_.shadow += size;
   RayIntervals<Real> intervals;
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
@@ -407,8 +401,9 @@ template <typename Real>
 void TileRenderer<Real>::Generate(const PixelList& pixels, std::size_t sample) {
   primary_.Reset(pixels.count);
   primary_.count = pixels.count;
-  simd::GeneratePrimary(frame_.camera, pixels.x.data(), pixels.y.data(), frame_.sample_x[sample],
-                        frame_.sample_y[sample], pixels.count, primary_.rays.output());
+  kernels_.generate_primary(frame_.camera, pixels.x.data(), pixels.y.data(),
+                            frame_.sample_x[sample], frame_.sample_y[sample], pixels.count,
+                            primary_.rays.output());
   rays_.primary += pixels.count;
   if (records_first_hits_) first_hits_.assign(pixels.count, {});
   Charge(Phase::kGenerate, pixels.count, pixels.count);

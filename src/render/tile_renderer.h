@@ -12,7 +12,6 @@
 #include "simd/kernels.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
-#include "simd/target.h"
 #include "src/render/bin_hits.h"
 #include "src/render/ray_queue.h"
 #include "src/stream/first_hit.h"
@@ -25,17 +24,16 @@ namespace sheaf {
 template <typename Real>
 class TileRenderer {
  public:
-  // Takes of the options the precision, strict or fast, and the timing. Once `stop` is set a call
-  // of Render ends soon, and what it leaves is rubbish.
+  // Takes of the options the target, the precision, strict or fast, and the timing. Once `stop` is
+  // set a call of Render ends soon, and what it leaves is rubbish.
   TileRenderer(const FrameView<Real>& frame, const RenderOptions& options,
                const std::atomic<bool>& stop)
       : frame_(frame),
-        kernels_(KernelsFor(options.precision)),
+        kernels_(KernelsFor(options)),
         binner_(frame.materials.size()),
         timing_(options.timing),
         stop_(stop),
-        lanes_(std::max(
-            1u, static_cast<std::uint32_t>(simd::RunningLanes() * sizeof(float) / sizeof(Real)))) {}
+        lanes_(kernels_.report_target().lanes) {}
 
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).
@@ -65,11 +63,11 @@ class TileRenderer {
     std::uint32_t capacity_ = 0;
   };
 
-  static Kernels<Real> KernelsFor(Precision precision) {
+  static Kernels<Real> KernelsFor(const RenderOptions& options) {
     if constexpr (std::is_same_v<Real, float>) {
-      if (precision == Precision::kFast) return FastKernels();
+      if (options.precision == Precision::kFast) return FastKernels(options.target.id());
     }
-    return StrictKernels<Real>();
+    return StrictKernels<Real>(options.target.id());
   }
 
   void RenderAdaptively(const PixelRect& tile);

@@ -11,24 +11,20 @@
 #include "sheaf/film.h"
 #include "sheaf/scene.h"
 #include "sheaf/stats.h"
+#include "sheaf/target.h"
 
 namespace sheaf {
 
 // What a picture is computed in; see docs/numerics.md.
 enum class Precision {
   kStrict,  // float, correctly rounded, never fused: the same bits everywhere
-  kFast,    // float, fused and approximate: other bits on every target; SIMD engine only
+  kFast,    // float, fused and approximate: other bits on every target; not on the baseline
   kDouble,  // the same renderer on double lanes
 };
 
 inline constexpr Precision kPrecisions[] = {Precision::kStrict, Precision::kFast,
                                             Precision::kDouble};
 const char* PrecisionName(Precision precision);  // "strict", "fast" or "double"
-
-enum class Engine {
-  kScalar,  // src/scalar, one ray at a time
-  kSimd,    // simd/, on the SIMD target that simd/target.h has chosen
-};
 
 enum class Timing { kOff, kOn };
 
@@ -51,7 +47,7 @@ struct RenderOptions {
   // colours that differ by more than this are one, [0, 1].
   std::optional<double> contrast;
   std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
-  Engine engine = Engine::kSimd;
+  Target target;                  // what computes it; strict bits are the same on all
   Precision precision = Precision::kStrict;
   int threads = 0;     // 0: one a core
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture

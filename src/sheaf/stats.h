@@ -55,7 +55,7 @@ struct LaneUse {
 struct TileCost {
   PixelRect tile;  // in picture coordinates
   std::uint64_t rays = 0;
-  LaneUse lane_use;  // of all phases; SIMD engine only
+  LaneUse lane_use;  // of all phases; not of the baseline
   double seconds = 0;
 };
 
@@ -67,11 +67,12 @@ struct RenderStats {
   double wall_seconds = 0.0;     // of the frame, without compilation and without waits for a sink
   double compile_seconds = 0.0;  // Scene to flat arrays
   double phase_seconds[static_cast<int>(Phase::kCount)] =
-      {};                                                  // summed over threads; SIMD engine only
-  LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};  // summed over threads; SIMD engine only
-  std::vector<TileCost> tiles;                             // thread by thread
-  int threads = 0;                                         // that took part
-  std::string target;  // what ran: "scalar" or a SIMD target's name
+      {};  // summed over threads; not of the baseline
+  LaneUse lane_use[static_cast<int>(Phase::kCount)] =
+      {};                       // summed over threads; not of the baseline
+  std::vector<TileCost> tiles;  // thread by thread
+  int threads = 0;              // that took part
+  std::string target;           // what ran: "scalar" or a SIMD target's name
   std::uint32_t primitives = 0, spheres = 0, triangles = 0;
 };
 
