@@ -228,7 +228,7 @@ void CheckTraces(const Model& model, const std::vector<scalar::Ray<float>>& from
   const auto primitive = Exact<std::uint32_t>(rays.count),
              object = Exact<std::uint32_t>(rays.count), occluded = Exact<std::uint32_t>(rays.count);
   const auto ask = [&](unsigned bit, auto* array) { return wanted >> bit & 1 ? array : nullptr; };
-  const TraceOptions options{{rays.t_min.get(), rays.t_max.get()}, Coherence::kUnknown};
+  const TraceOptions options{.intervals = {rays.t_min.get(), rays.t_max.get()}};
   TraceClosest(geometry, rays.view(), rays.count,
                {ask(0, t.get()), ask(1, primitive.get()), ask(2, object.get()), ask(3, u.get()),
                 ask(4, v.get())},
@@ -290,7 +290,7 @@ TEST_CASE("one interval for all, no sources, no geometry") {
   CHECK(t[1] == 3);
   CHECK(primitive[0] == 1);
   CHECK(primitive[1] == 0);
-  const TraceOptions near = {{.all_t_max = 2}};
+  const TraceOptions near = {.intervals = {.all_t_max = 2}};
   TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive}, near);
   TraceOccluded(built.value(), inside, 2, occluded, near);
   CHECK(t[0] == 1);

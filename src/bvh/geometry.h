@@ -80,7 +80,7 @@ class Geometry {
 struct TraceOptions {
   RayIntervals<float> intervals;
   Coherence coherence = Coherence::kUnknown;
-  Target target;  // what computes it; the bits are the same on all
+  Target target{};  // what computes it; the bits are the same on all
 };
 
 // What TraceClosest fills, `count` elements each; fields that are null are left out.

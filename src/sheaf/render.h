@@ -47,7 +47,7 @@ struct RenderOptions {
   // colours that differ by more than this are one, [0, 1].
   std::optional<double> contrast;
   std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
-  Target target;                  // what computes it; strict bits are the same on all
+  Target target{};                  // what computes it; strict bits are the same on all
   Precision precision = Precision::kStrict;
   int threads = 0;     // 0: one a core
   int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
