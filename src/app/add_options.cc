@@ -1,23 +1,71 @@
 #include "src/app/add_options.h"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <climits>
 
 namespace sheaf {
 
-CLI::Option* AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
-                     const char* description) {
+void AddText(CLI::App& app, const char* name, const char* placeholder, const std::string& expected,
+             const std::string& description, std::function<bool(const std::string&)> set) {
+  app.add_option(
+         name,
+         [name, expected, set = std::move(set)](const CLI::results_t& words) {
+           if (set(words.front())) return true;
+           throw CLI::ValidationError(name,
+                                      fmt::format("\"{}\" is not {}", words.front(), expected));
+         },
+         description)
+      ->option_text(placeholder);
+}
+
+void AddInput(CLI::App& app, const char* name, std::string& value, Presence presence,
+              const char* description) {
+  app.add_option(name, value, description)
+      ->required(presence == Presence::kNeeded)
+      ->option_text(" ");
+}
+
+void AddInputs(CLI::App& app, const char* name, std::vector<std::string>& values, Presence presence,
+               const char* description) {
+  app.add_option(name, values, description)
+      ->required(presence == Presence::kNeeded)
+      ->option_text("...");
+}
+
+void AddName(CLI::App& app, const char* name, std::string& value, const char* placeholder,
+             const char* description) {
+  app.add_option(name, value, description)->option_text(placeholder);
+}
+
+void AddChoice(CLI::App& app, const char* name, std::string& value,
+               const std::vector<std::string>& choices, const char* description) {
+  app.add_option(name, value, description)
+      ->option_text(fmt::format("{}", fmt::join(choices, "|")))
+      ->check(CLI::IsMember(choices));
+}
+
+void AddFlag(CLI::App& app, const char* name, bool& value, const char* description) {
+  app.add_flag(name, value, description);
+}
+
+void AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
+             const std::string& description) {
   const auto complain = [](const std::string& text) {
     return std::string(text.empty() ? "the path is empty" : "");
   };
-  return app.add_option(name, path, description)->option_text(placeholder)->check(complain);
+  app.add_option(name, path, description)->option_text(placeholder)->check(complain);
 }
 
-void AddOutput(CLI::App& app, std::string& path, const char* placeholder, const char* description) {
-  AddPath(app, "-o,--output", path, placeholder, description)->required();
+void AddOutput(CLI::App& app, std::string& path, const char* placeholder,
+               const std::string& description) {
+  AddPath(app, "-o,--output", path, placeholder, description);
+  app.get_option("--output")->required();
 }
 
 void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
-                const char* description) {
+                const std::string& description) {
   const std::string expected = max == INT_MAX ? fmt::format("a whole number from {}", min)
                                               : fmt::format("a whole number {} to {}", min, max);
   AddParsed(app, name, value, "N", expected, description,
@@ -40,12 +88,11 @@ void AddBits(CLI::App& app, std::optional<int>& bits) {
   AddInteger(app, "--bits", bits, 8, 32, "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
 }
 
-CLI::Option* AddPrecision(CLI::App& app, std::string& name) {
+void AddPrecision(CLI::App& app, std::string& name, const char* placeholder) {
   std::vector<std::string> names;
   for (const Precision precision : kPrecisions) names.push_back(PrecisionName(precision));
-  return app.add_option("--precision", name, "Arithmetic")
-      ->option_text(fmt::format("{}", fmt::join(names, "|")))
-      ->check(CLI::IsMember(names));
+  AddChoice(app, "--precision", name, names, "Arithmetic");
+  if (placeholder != nullptr) app.get_option("--precision")->option_text(placeholder);
 }
 
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description) {
@@ -72,6 +119,14 @@ void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
   app.add_option("--views", choice.view, "A view: a set of cameras that the scene names")
       ->option_text("SET")
       ->excludes("--camera");
+}
+
+std::vector<std::string> GivenOptions(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
 }
 
 }  // namespace sheaf

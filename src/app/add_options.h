@@ -2,9 +2,7 @@
 #ifndef SHEAF_APP_ADD_OPTIONS_H_
 #define SHEAF_APP_ADD_OPTIONS_H_
 
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,37 +10,59 @@
 
 #include "src/app/choose.h"
 
-namespace sheaf {
-
-// Adds an option whose text `parse` understands; `expected` completes "--name: X is not ...".
-template <typename T, typename Parse>
-void AddParsed(CLI::App& app, const char* name, T& value, const char* placeholder,
-               const std::string& expected, const char* description, Parse parse) {
-  app.add_option(
-         name,
-         [name, &value, expected, parse](const CLI::results_t& words) {
-           auto parsed = parse(words.front());
-           if (!parsed) {
-             throw CLI::ValidationError(name,
-                                        fmt::format("\"{}\" is not {}", words.front(), expected));
-           }
-           value = *std::move(parsed);
-           return true;
-         },
-         description)
-      ->option_text(placeholder);
+// Only add_options.cc and main.cc include CLI11, which takes seconds to compile.
+namespace CLI {
+class App;
 }
 
+namespace sheaf {
+
+// Adds an option. `set` keeps the value that its text stands for, and returns whether there is one.
+// `expected` completes "--name: X is not ...".
+void AddText(CLI::App& app, const char* name, const char* placeholder, const std::string& expected,
+             const std::string& description, std::function<bool(const std::string&)> set);
+
+// The same, for a function that returns the value, or nothing.
+template <typename T, typename Parse>
+void AddParsed(CLI::App& app, const char* name, T& value, const char* placeholder,
+               const std::string& expected, const std::string& description, Parse parse) {
+  AddText(app, name, placeholder, expected, description, [&value, parse](const std::string& text) {
+    auto parsed = parse(text);
+    if (!parsed) return false;
+    value = *std::move(parsed);
+    return true;
+  });
+}
+
+// What stands without an option's name before it, like SCENE.
+enum class Presence { kNeeded, kOptional };
+void AddInput(CLI::App& app, const char* name, std::string& value, Presence presence,
+              const char* description);
+void AddInputs(CLI::App& app, const char* name, std::vector<std::string>& values, Presence presence,
+               const char* description);
+
+// A word that means something to whoever runs the command.
+void AddName(CLI::App& app, const char* name, std::string& value, const char* placeholder,
+             const char* description);
+
+// One of `choices`.
+void AddChoice(CLI::App& app, const char* name, std::string& value,
+               const std::vector<std::string>& choices, const char* description);
+
+// True where the flag stands on the command line.
+void AddFlag(CLI::App& app, const char* name, bool& value, const char* description);
+
 // A path, which may not be empty: as an unset variable of a script is.
-CLI::Option* AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
-                     const char* description);
+void AddPath(CLI::App& app, const char* name, std::string& path, const char* placeholder,
+             const std::string& description);
 
 // -o and --output, which are needed.
-void AddOutput(CLI::App& app, std::string& path, const char* placeholder, const char* description);
+void AddOutput(CLI::App& app, std::string& path, const char* placeholder,
+               const std::string& description);
 
 // A whole number in [min, max]; INT_MAX is no limit.
 void AddInteger(CLI::App& app, const char* name, std::optional<int>& value, int min, int max,
-                const char* description);
+                const std::string& description);
 
 // A part of white or of a weight, in [0, 1].
 void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
@@ -54,8 +74,8 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size);
 // --bits, of a picture's channel.
 void AddBits(CLI::App& app, std::optional<int>& bits);
 
-// --precision, a name that PrecisionOf takes.
-CLI::Option* AddPrecision(CLI::App& app, std::string& name);
+// --precision, a name that PrecisionOf takes; the help shows `placeholder`, or all names if null.
+void AddPrecision(CLI::App& app, std::string& name, const char* placeholder = nullptr);
 
 // --targets, a list that ExpandTargets takes.
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description);
@@ -68,6 +88,9 @@ void AddJson(CLI::App& app, std::string& destination, const char* description);
 
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);
+
+// The options and inputs that the parsed command line has, by the names given above.
+std::vector<std::string> GivenOptions(const CLI::App& app);
 
 }  // namespace sheaf
 

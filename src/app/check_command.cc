@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "src/app/add_options.h"
 #include "src/app/json_text.h"
+#include "src/app/open_scene.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/formats/printable.h"
@@ -14,6 +15,12 @@ namespace sheaf {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct CheckRequest {
+  SceneOptions options;
+  std::vector<std::string> scenes;
+  bool json = false;
+};
 
 Json CheckJson(const std::string& path, const OpenedScene& opened) {
   const SceneSummary summary = Summarize(opened.scene);
@@ -52,17 +59,13 @@ std::string CheckText(const Json& json) {
   return text;
 }
 
-}  // namespace
-
-CLI::App* AddCheckCommand(CLI::App& app, CheckRequest& request) {
-  CLI::App* check =
-      app.add_subcommand("check", "Validate scenes and say what rendering them would skip");
-  check->add_option("SCENE", request.scenes, "Scenes or models")->required()->option_text("...");
-  AddSceneOptions(*check, request.options);
-  check->add_flag("--json", request.json, "The same as JSON");
-  return check;
+void AddCheckOptions(CLI::App& app, CheckRequest& request) {
+  AddInputs(app, "SCENE", request.scenes, Presence::kNeeded, "Scenes or models");
+  AddSceneOptions(app, request.options);
+  AddFlag(app, "--json", request.json, "The same as JSON");
 }
 
+// Reads every scene, also after a bad one, and prints the errors. The first of them is the code.
 Result<ExitCode> RunCheck(const CheckRequest& request) {
   Json all = Json::array();
   ExitCode code = ExitCode::kOk;
@@ -84,5 +87,9 @@ Result<ExitCode> RunCheck(const CheckRequest& request) {
   if (!written) return written.error();
   return code;
 }
+
+}  // namespace
+
+Command CheckCommand() { return MakeCommand(&AddCheckOptions, &RunCheck); }
 
 }  // namespace sheaf

@@ -1,31 +1,12 @@
-// `sheaf check`: is this scene sound, and what of it would be skipped?
+// `sheaf check`: whether scenes are sound, and what of them rendering would skip.
 #ifndef SHEAF_APP_CHECK_COMMAND_H_
 #define SHEAF_APP_CHECK_COMMAND_H_
 
-#include <string>
-#include <vector>
-
-#include "sheaf/error.h"
-#include "src/app/exit_code.h"
-#include "src/app/open_scene.h"
-
-namespace CLI {
-class App;
-}
+#include "src/app/command.h"
 
 namespace sheaf {
 
-struct CheckRequest {
-  SceneOptions options;
-  std::vector<std::string> scenes;
-  bool json = false;
-};
-
-// Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
-CLI::App* AddCheckCommand(CLI::App& app, CheckRequest& request);
-
-// Reads every scene, also after a bad one, and prints the errors; the code is that of the first.
-Result<ExitCode> RunCheck(const CheckRequest& request);
+Command CheckCommand();
 
 }  // namespace sheaf
 

@@ -1,46 +1,12 @@
-// `sheaf compare`: whether renderings of a scene have the same bits, or how far apart pictures are.
+// `sheaf compare`: whether a scene's renderings have the same bits, or how far apart pictures are.
 #ifndef SHEAF_APP_COMPARE_COMMAND_H_
 #define SHEAF_APP_COMPARE_COMMAND_H_
 
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "src/app/choose.h"
-#include "src/app/exit_code.h"
-#include "src/app/open_scene.h"
-#include "src/app/parse_options.h"
-
-namespace CLI {
-class App;
-}
+#include "src/app/command.h"
 
 namespace sheaf {
 
-// The command line as it was given.
-struct CompareRequest {
-  const CLI::App* command = nullptr;  // knows which options were given
-  SceneOptions options;
-  std::vector<std::string> inputs;  // one scene, or pictures of which the first is the reference
-  // Of a scene:
-  CameraChoice choice;
-  std::optional<PixelSize> size;
-  std::optional<int> samples, max_ulp;
-  std::vector<std::string> targets = {"all"};
-  std::vector<int> threads = {1};
-  std::string precision = "strict";
-  // Of pictures:
-  std::string transfer = "linear";
-  std::vector<std::pair<std::string, double>> limits;  // of --fail, by metric
-
-  bool json = false;
-};
-
-CLI::App* AddCompareCommand(CLI::App& app, CompareRequest& request);
-
-// kOk where nothing differs, or less than allowed; kDifferent otherwise.
-Result<ExitCode> RunCompare(const CompareRequest& request);
+Command CompareCommand();
 
 }  // namespace sheaf
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <utility>
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
+#include "src/app/open_scene.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
@@ -18,6 +18,13 @@
 
 namespace sheaf {
 namespace {
+
+struct ConvertRequest {
+  SceneOptions options;
+  std::string input, output;
+  std::optional<int> bits;
+  std::string transfer;  // empty: keep
+};
 
 // ---- Scenes ----
 
@@ -32,7 +39,7 @@ Status WriteImage(const Image& image, const std::string& path) {
   return WritePng(picture, Transfer::kLinear, path);
 }
 
-// Textures lie beside the scene that names them, as PNG: their names by image.
+// The file names of textures, by image. They are written beside the scene, as PNG.
 using TextureNames = std::map<const Image*, std::string>;
 
 TextureNames NameTextures(const Scene& scene, const std::filesystem::path& output) {
@@ -67,7 +74,7 @@ Status WriteTextures(const TextureNames& names, const std::string& output, Scene
 }
 
 Status ConvertScene(const ConvertRequest& request) {
-  if (request.bits || request.transfer) {
+  if (request.bits || !request.transfer.empty()) {
     return Usage(fmt::format("{}: for pictures, and {} is a scene",
                              request.bits ? "--bits" : "--transfer", PrintablePath(request.input)));
   }
@@ -94,7 +101,7 @@ Status ConvertScene(const ConvertRequest& request) {
 
 // ---- Pictures ----
 
-// What is encoded for a display becomes light, if the file says how it is encoded.
+// Display values become light, where the file says how they are encoded.
 void DecodeLight(ReadPictureResult& picture) {
   if (picture.is_display && picture.is_srgb) {
     for (float& value : picture.film.rgb) {
@@ -118,8 +125,7 @@ Status ConvertPicture(const ConvertRequest& request) {
   if (!read) return read.error();
   ReadPictureResult& picture = read.value();
   const Film& film = picture.film;
-  const std::string transfer = request.transfer.value_or("keep");
-  const bool keeps = transfer == "keep";
+  const bool keeps = request.transfer.empty() || request.transfer == "keep";
   PictureSpec spec = WholePicture(film.width, film.height, Transfer::kLinear);
   if (picture.window.width() > 0) {
     spec.window = picture.window;
@@ -127,11 +133,11 @@ Status ConvertPicture(const ConvertRequest& request) {
     spec.full_height = picture.full_height;
   }
   spec.metadata = picture.metadata;
-  // Whoever halves a PNG's light, or spreads it to 32 bits, says so.
+  // Bits a channel stay where both hold bytes or both floats, and the output can hold as many.
   const bool is_same_kind = picture.is_display != HoldsFloats(request.output);
   const bool keeps_bits = is_same_kind && CheckPictureBits(request.output, picture.bits).ok();
   spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
-  if (transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
+  if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   if (keeps && picture.is_display && !HoldsFloats(request.output)) {
     spec.values = Values::kEncoded;
   } else {
@@ -141,23 +147,13 @@ Status ConvertPicture(const ConvertRequest& request) {
   return WritePicture(film, spec, request.output);
 }
 
-}  // namespace
-
-CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request) {
-  CLI::App* convert = app.add_subcommand(
-      "convert", "Turn a scene or model into scene JSON, or a picture into another format");
-  convert->add_option("INPUT", request.input, "A scene, a model or a picture")
-      ->required()
-      ->option_text(" ");
-  AddOutput(*convert, request.output, "PATH", "The ending chooses the format (needed)");
-  AddBits(*convert, request.bits);
-  convert
-      ->add_option("--transfer", request.transfer,
-                   "How a .png encodes light; keep: as the input does, or linear")
-      ->option_text("keep|linear|srgb")
-      ->check(CLI::IsMember({"keep", "linear", "srgb"}));
-  AddSceneOptions(*convert, request.options);
-  return convert;
+void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
+  AddInput(app, "INPUT", request.input, Presence::kNeeded, "A scene, a model or a picture");
+  AddOutput(app, request.output, "PATH", "The ending chooses the format (needed)");
+  AddBits(app, request.bits);
+  AddChoice(app, "--transfer", request.transfer, {"keep", "linear", "srgb"},
+            "How a .png encodes light; keep: as the input does, or linear");
+  AddSceneOptions(app, request.options);
 }
 
 Status RunConvert(const ConvertRequest& request) {
@@ -170,5 +166,9 @@ Status RunConvert(const ConvertRequest& request) {
                   "picture (.png, .pfm, .exr)",
                   request.input));
 }
+
+}  // namespace
+
+Command ConvertCommand() { return MakeCommand(&AddConvertOptions, &RunConvert); }
 
 }  // namespace sheaf

@@ -2,29 +2,11 @@
 #ifndef SHEAF_APP_CONVERT_COMMAND_H_
 #define SHEAF_APP_CONVERT_COMMAND_H_
 
-#include <optional>
-#include <string>
-
-#include "sheaf/error.h"
-#include "src/app/open_scene.h"
-
-namespace CLI {
-class App;
-}
+#include "src/app/command.h"
 
 namespace sheaf {
 
-struct ConvertRequest {
-  SceneOptions options;
-  std::string input, output;
-  std::optional<int> bits;
-  std::optional<std::string> transfer;  // keep, if absent
-};
-
-// Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
-CLI::App* AddConvertCommand(CLI::App& app, ConvertRequest& request);
-
-Status RunConvert(const ConvertRequest& request);
+Command ConvertCommand();
 
 }  // namespace sheaf
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -11,8 +10,11 @@
 #include <variant>
 
 #include "sheaf/scene.h"
+#include "sheaf/target.h"
 #include "sheaf/version.h"
+#include "src/app/add_options.h"
 #include "src/app/json_text.h"
+#include "src/app/open_scene.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
 #include "src/core/build_info.h"
@@ -23,6 +25,12 @@ namespace sheaf {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct InfoRequest {
+  SceneOptions options;
+  std::string scene;  // empty: none
+  bool json = false;
+};
 
 // Linux names the processor here ("model name" on x86); other systems just say less.
 std::string ProcessorModel() {
@@ -36,12 +44,19 @@ std::string ProcessorModel() {
 
 Json VectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
+Json PartsJson() {
+  Json json = Json::object();
+  for (const OptionalPart& part : OptionalParts()) json[part.name] = part.is_built_in;
+  return json;
+}
+
 Json MachineJson() {
   std::vector<std::string> usable = UsableTargets();
   usable.push_back("scalar");
   return {
       {"sheaf",
        {{"version", kVersion}, {"compiler", CompilerName()}, {"build_type", BuildTypeName()}}},
+      {"parts", PartsJson()},
       {"processor", {{"model", ProcessorModel()}, {"cores", std::thread::hardware_concurrency()}}},
       {"targets",
        {{"compiled", CompiledTargets()},
@@ -126,6 +141,17 @@ std::string TextOf(const Json& value) {
   return value.is_string() ? PrintablePath(value.get<std::string>()) : value.dump();
 }
 
+enum class Held { kBuiltIn, kMissing };
+
+// Names of the optional parts that are there, or of those that are not.
+std::string PartsText(const Json& parts, Held which) {
+  Json names = Json::array();
+  for (const auto& [name, is_built_in] : parts.items()) {
+    if (is_built_in.get<bool>() == (which == Held::kBuiltIn)) names.push_back(name);
+  }
+  return JoinNames(names, ", ");
+}
+
 std::string MachineText(const Json& machine) {
   const Json& sheaf = machine["sheaf"];
   const Json& processor = machine["processor"];
@@ -133,11 +159,14 @@ std::string MachineText(const Json& machine) {
   return fmt::format(
       "sheaf {}\n"
       "compiler    {}, {}\n"
+      "built in    {}\n"
+      "missing     {}\n"
       "processor   {}, {} cores\n"
       "compiled    {}\n"
       "usable      {}\n"
       "chosen      {}, {} lanes of float\n",
       TextOf(sheaf["version"]), TextOf(sheaf["compiler"]), TextOf(sheaf["build_type"]),
+      PartsText(machine["parts"], Held::kBuiltIn), PartsText(machine["parts"], Held::kMissing),
       TextOf(processor["model"]), TextOf(processor["cores"]), JoinNames(targets["compiled"], ", "),
       JoinNames(targets["usable"], ", "), TextOf(targets["chosen"]), TextOf(targets["lanes"]));
 }
@@ -180,14 +209,10 @@ std::string SceneText(const Json& scene) {
   return text;
 }
 
-}  // namespace
-
-CLI::App* AddInfoCommand(CLI::App& app, InfoRequest& request) {
-  CLI::App* info = app.add_subcommand("info", "Show the machine's SIMD targets, or a scene");
-  info->add_option("SCENE", request.scene, "A scene file to describe")->option_text(" ");
-  AddSceneOptions(*info, request.options);
-  info->add_flag("--json", request.json, "The same as JSON");
-  return info;
+void AddInfoOptions(CLI::App& app, InfoRequest& request) {
+  AddInput(app, "SCENE", request.scene, Presence::kOptional, "A scene file to describe");
+  AddSceneOptions(app, request.options);
+  AddFlag(app, "--json", request.json, "The same as JSON");
 }
 
 Status RunInfo(const InfoRequest& request) {
@@ -204,5 +229,9 @@ Status RunInfo(const InfoRequest& request) {
   if (json.contains("scene")) text += SceneText(json["scene"]);
   return WriteStandardOutput(text);
 }
+
+}  // namespace
+
+Command InfoCommand() { return MakeCommand(&AddInfoOptions, &RunInfo); }
 
 }  // namespace sheaf

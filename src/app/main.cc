@@ -12,47 +12,31 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sheaf/version.h"
-#include "src/app/bench_command.h"
-#include "src/app/check_command.h"
-#include "src/app/compare_command.h"
-#include "src/app/convert_command.h"
+#include "src/app/commands.h"
 #include "src/app/exit_code.h"
-#include "src/app/info_command.h"
-#include "src/app/merge_command.h"
-#include "src/app/pareto_command.h"
-#include "src/app/render_command.h"
 #include "src/app/standard_output.h"
-#include "src/app/stress_command.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
 namespace sheaf {
 namespace {
 
-constexpr char kFooter[] = R"(
-Examples:
-  sheaf render scene.json -o picture.png
-  sheaf render scene.json --views seven -o 'out/{camera}.png'
-  sheaf render scene.json --camera front --size 1280x960 --json -o front.pfm
-  sheaf render model.glb -o model.exr --aov depth,normal
-  sheaf render scene.json --tile 2/8 -o part2.png
-  sheaf merge part1.png part2.png ... -o whole.png
-  sheaf convert scene.nff -o scene.json
-  sheaf check scene.json
-  sheaf compare scene.json --targets all --threads 1,2
-  sheaf compare expected.png found.png --fail psnr=40
-  sheaf bench scene.json --baseline before.json
-  sheaf pareto scene.json -o report/
-  sheaf stress
-  sheaf info scene.json
-
+constexpr char kExitCodes[] = R"(
 Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
 130 interrupted, 143 terminated.)";
 
-// CLI11 names a flag together with the value that it has when it stands alone: "--json{-}".
+std::string Footer() {
+  std::string text = "\nExamples:\n";
+  for (const CommandEntry& entry : Commands()) text += entry.examples;
+  return text + kExitCodes;
+}
+
+// CLI11 writes "--json{-}" for a flag that takes a value: "-" is the value of the flag alone. The
+// help shows the name without it.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
@@ -61,8 +45,9 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-// A file opened while descriptor 1 is closed would become standard output. So the closed ones are
-// filled; what is written to standard output then fails, as it should.
+// A caller may start the command with standard output closed. The next file that is opened would
+// then get its descriptor, and text for standard output would end in that file. So each closed
+// descriptor opens /dev/null. Standard output opens it for reading: writing there still fails.
 void FillStandardDescriptors() {
   for (int descriptor = 0; descriptor < 3; ++descriptor) {
     if (fcntl(descriptor, F_GETFD) == -1) {
@@ -71,15 +56,17 @@ void FillStandardDescriptors() {
   }
 }
 
-ExitCode ToExitCode(const Status& status) {
-  return status.ok() ? ExitCode::kOk : Report(status.error());
-}
-
 ExitCode ToExitCode(const Result<ExitCode>& result) {
   return result.ok() ? result.value() : Report(result.error());
 }
 
-// Names the first word that fits nothing. CLI11 would rather complain about what it then misses.
+ExitCode Print(const std::string& text) {
+  const Status written = WriteStandardOutput(text);
+  return written.ok() ? ExitCode::kOk : Report(written.error());
+}
+
+// Says which word fits nothing, and what may have been meant. CLI11 would report the argument that
+// is missing because of it.
 std::string DescribeExtra(const CLI::App& app, const std::string& word) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) {
@@ -99,7 +86,8 @@ std::string DescribeExtra(const CLI::App& app, const std::string& word) {
                      Printable(word), hint);
 }
 
-// CLI11 would take "--json=" for "--json", and "--size= 9x9" for "--size 9x9".
+// The first word like "--json=", which CLI11 would take for "--json". A script writes it where a
+// variable is not set.
 std::optional<std::string> FindEmptyValue(int argc, char** argv) {
   for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string word = argv[i];
@@ -108,18 +96,18 @@ std::optional<std::string> FindEmptyValue(int argc, char** argv) {
   return std::nullopt;
 }
 
-// CLI11 asks for help and version by exception, too.
+// Answers what CLI11 threw. Help and version come as exceptions too.
 ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::CallForHelp*>(&error) != nullptr) {
-    return ToExitCode(WriteStandardOutput(app.help()));
+    return Print(app.help());
   }
   if (dynamic_cast<const CLI::CallForVersion*>(&error) != nullptr) {
-    return ToExitCode(WriteStandardOutput(fmt::format("{}\n", error.what())));
+    return Print(fmt::format("{}\n", error.what()));
   }
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const CLI::App& innermost = parsed.empty() ? app : *parsed.front();
   std::vector<std::string> extra = innermost.remaining();
-  // What stands after it is wrong, where anything is.
+  // "--" itself is never the wrong word; one after it may be.
   extra.erase(std::remove(extra.begin(), extra.end(), "--"), extra.end());
   const bool about_extra = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                            dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
@@ -132,34 +120,22 @@ ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
 
 ExitCode Main(int argc, char** argv) {
   FillStandardDescriptors();
-  // A reader that goes away and a limit on the size of files show as failed writes, which are
-  // reported.
+  // These signals would kill the command: the reader of its output went away, or a file reached the
+  // limit of its size. Ignored, they become failed writes, which are reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 
   CLI::App app("Sheaf, a SIMD packet ray tracer for CPUs", "sheaf");
   app.set_version_flag("--version", fmt::format("sheaf {}", kVersion));
   app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(kFooter);
+  app.footer(Footer());
   app.require_subcommand(1);
-  RenderRequest render_request;
-  BenchRequest bench_request;
-  CheckRequest check_request;
-  CompareRequest compare_request;
-  ConvertRequest convert_request;
-  InfoRequest info_request;
-  MergeRequest merge_request;
-  ParetoRequest pareto_request;
-  StressRequest stress_request;
-  const CLI::App* render = AddRenderCommand(app, render_request);
-  const CLI::App* bench = AddBenchCommand(app, bench_request);
-  const CLI::App* compare = AddCompareCommand(app, compare_request);
-  const CLI::App* info = AddInfoCommand(app, info_request);
-  const CLI::App* convert = AddConvertCommand(app, convert_request);
-  const CLI::App* merge = AddMergeCommand(app, merge_request);
-  const CLI::App* check = AddCheckCommand(app, check_request);
-  const CLI::App* pareto = AddParetoCommand(app, pareto_request);
-  const CLI::App* stress = AddStressCommand(app, stress_request);
+  std::vector<std::pair<const CLI::App*, Command>> commands;
+  for (const CommandEntry& entry : Commands()) {
+    CLI::App* const subcommand = app.add_subcommand(entry.name, entry.help);
+    commands.emplace_back(subcommand, entry.make());
+    commands.back().second.add_options(*subcommand);
+  }
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::kUsage;
@@ -172,19 +148,13 @@ ExitCode Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return ReportParse(app, error);
   }
-  if (render->parsed()) return ToExitCode(RunRender(render_request));
-  if (bench->parsed()) return ToExitCode(RunBench(bench_request));
-  if (compare->parsed()) return ToExitCode(RunCompare(compare_request));
-  if (info->parsed()) return ToExitCode(RunInfo(info_request));
-  if (convert->parsed()) return ToExitCode(RunConvert(convert_request));
-  if (merge->parsed()) return ToExitCode(RunMerge(merge_request));
-  if (check->parsed()) return ToExitCode(RunCheck(check_request));
-  if (pareto->parsed()) return ToExitCode(RunPareto(pareto_request));
-  if (stress->parsed()) return ToExitCode(RunStress(stress_request));
+  for (const auto& [subcommand, command] : commands) {
+    if (subcommand->parsed()) return ToExitCode(command.run());
+  }
   return ExitCode::kInternal;
 }
 
-// Nothing of Sheaf throws; the standard library does where memory or threads run out.
+// Sheaf itself throws nothing. The standard library throws where memory or threads run out.
 int GuardedMain(int argc, char** argv) {
   try {
     return static_cast<int>(Main(argc, argv));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
@@ -18,12 +17,17 @@
 namespace sheaf {
 namespace {
 
+struct MergeRequest {
+  std::vector<std::string> parts;
+  std::string output;
+};
+
 struct Part {
   const std::string* path;
   ReadPictureResult picture;
 };
 
-// Parts that know no place lie one beneath the other.
+// PFM parts do not say where they belong. They are stacked in the order given.
 Status StackParts(std::vector<Part>& parts) {
   const Part& first = parts.front();
   const int width = first.picture.film.width;
@@ -62,13 +66,13 @@ const std::string* FindText(const ReadPictureResult& picture, std::string_view k
   return nullptr;
 }
 
-// Whether two parts are of one picture, as far as they tell.
+// kUsage where the metadata of two parts name different pictures.
 Status CheckOrigin(const Part& part, const Part& first) {
   for (const std::string_view key : kMetadataKeys) {
     const std::string* const text = FindText(part.picture, key);
     const std::string* const expected = FindText(first.picture, key);
     if (text == nullptr || expected == nullptr || *text == *expected) continue;
-    // Each machine may keep the scene in a folder of its own.
+    // Parts may come from machines that keep the scene in different folders.
     using Path = std::filesystem::path;
     if (key == "Scene" && Path(*text).filename() == Path(*expected).filename()) continue;
     return Usage(fmt::format("{}: {} \"{}\", and {} has \"{}\": parts of different pictures",
@@ -117,7 +121,7 @@ Status CheckParts(const std::vector<Part>& parts) {
   return Done{};
 }
 
-// Of each kind the first that a part has.
+// For each key the text of the first part that has one.
 PictureMetadata MetadataOf(const std::vector<Part>& parts) {
   PictureMetadata metadata;
   for (const char* key : kMetadataKeys) {
@@ -161,16 +165,9 @@ Status FillWhole(const std::vector<Part>& parts, Film& whole) {
   return Usage(fmt::format("pixel ({}, {}) is in no part", at % whole.width, at / whole.width));
 }
 
-}  // namespace
-
-CLI::App* AddMergeCommand(CLI::App& app, MergeRequest& request) {
-  CLI::App* merge =
-      app.add_subcommand("merge", "Join what --tile I/N or --crop rendered into the whole picture");
-  merge->add_option("PART", request.parts, "Pictures that hold every pixel once")
-      ->required()
-      ->option_text("...");
-  AddOutput(*merge, request.output, "PATH", "The whole, of the same format as the parts (needed)");
-  return merge;
+void AddMergeOptions(CLI::App& app, MergeRequest& request) {
+  AddInputs(app, "PART", request.parts, Presence::kNeeded, "Pictures that hold every pixel once");
+  AddOutput(app, request.output, "PATH", "The whole, of the same format as the parts (needed)");
 }
 
 Status RunMerge(const MergeRequest& request) {
@@ -202,5 +199,9 @@ Status RunMerge(const MergeRequest& request) {
   if (CheckPictureBits(request.output, first.bits)) spec.bits = first.bits;
   return WritePicture(whole, spec, request.output);
 }
+
+}  // namespace
+
+Command MergeCommand() { return MakeCommand(&AddMergeOptions, &RunMerge); }
 
 }  // namespace sheaf

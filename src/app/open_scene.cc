@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <glm/geometric.hpp>
@@ -65,8 +64,8 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options) {
             });
   AddInteger(app, "--cone-sides", options.cone_sides, 3, kMaxConeSides,
              "Sides of an NFF file's cones and cylinders; 32 if absent");
-  app.add_flag("--allow-outside", options.allow_outside,
-               "Let the scene name files outside its folder");
+  AddFlag(app, "--allow-outside", options.allow_outside,
+          "Let the scene name files outside its folder");
 }
 
 std::optional<std::string> GivenSceneOption(const SceneOptions& options) {

@@ -2,19 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <utility>
-#include <variant>
 
 #include "sheaf/scene.h"
-#include "src/app/add_options.h"
 #include "src/app/choose.h"
+#include "src/app/frame_writer.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/layer_picture.h"
 #include "src/app/progress.h"
+#include "src/app/render_request.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
 #include "src/core/atomic_file.h"
@@ -24,15 +23,8 @@
 namespace sheaf {
 namespace {
 
-// One picture to make.
-struct Frame {
-  const Camera* camera;
-  std::string path;
-  std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
-};
-
-// What is wrong without a look at the scene: the command line first, then the places to write to.
-Status CheckRequest(const RenderRequest& request) {
+// Finds what is wrong before the scene is read: first the command line, then where to write.
+Status CheckCommandLine(const RenderRequest& request) {
   if (request.choice.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
     return Usage(
         fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
@@ -46,7 +38,7 @@ Status CheckRequest(const RenderRequest& request) {
   }
   if (const auto chosen = ChooseTarget(request.target); !chosen) return chosen.error();
 
-  // Where the field stands in the folder's name, PlanFrames checks each folder.
+  // Where {camera} is part of the folder's name, PlanFrames checks each folder.
   const std::string folder = request.output.substr(0, request.output.rfind('/') + 1);
   if (folder.find(kCameraField) == std::string::npos) {
     if (const Status writable = CheckWritable(request.output); !writable) return writable;
@@ -142,84 +134,6 @@ std::uint64_t PixelCount(const PixelSize& size) {
   return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
-// With the camera's place: parts are of one picture where these texts are the same, and the command
-// line may have moved it.
-std::string SettingsText(const RenderOptions& options, const Camera& camera) {
-  const Vec3d& eye = camera.eye;
-  const Vec3d& look_at = camera.look_at;
-  const auto* perspective = std::get_if<Perspective>(&camera.projection);
-  const double view =
-      perspective ? perspective->fov_y : std::get<Orthographic>(camera.projection).height;
-  return fmt::format(
-      "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
-      "eye {} {} {}, look at {} {} {}, {} {}",
-      options.width, options.height, options.samples, options.max_depth,
-      PrecisionName(options.precision), options.min_throughput,
-      options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
-      eye.z, look_at.x, look_at.y, look_at.z, perspective ? "fov" : "height", view);
-}
-
-// The picture of a frame, and its layers where they have files of their own.
-class FrameWriter {
- public:
-  static Result<FrameWriter> Create(const Scene& scene, const Frame& frame,
-                                    const RenderOptions& options, std::optional<int> bits,
-                                    const std::string& scene_path) {
-    PictureSpec spec = WholePicture(options.width, options.height, scene.settings.transfer);
-    if (options.crop) spec.window = *options.crop;
-    spec.bits = bits.value_or(0);
-    spec.metadata = {{"Scene", scene_path},
-                     {"Camera", frame.camera->name},
-                     {"Settings", SettingsText(options, *frame.camera)}};
-    if (HoldsLayers(frame.path)) spec.layers = options.layers;
-    Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
-    if (!picture) return picture.error();
-    FrameWriter writer(std::move(picture).value());
-    for (const auto& [layer, path] : frame.beside) {
-      if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
-      if (layer == Layer::kHeat) continue;  // known when all tiles are
-      PictureSpec beside = spec;
-      beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
-      if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
-      Result<PictureWriter> created = PictureWriter::Create(path, beside);
-      if (!created) return created.error();
-      const LayerLook look = HoldsFloats(path) ? LayerLook::kNumbers : LayerLook::kDisplay;
-      writer.beside_.push_back({layer, look, std::move(created).value()});
-    }
-    return writer;
-  }
-
-  Status WriteRows(const Film& rows) {
-    Status status = picture_.WriteRows(rows);
-    for (Beside& beside : beside_) {
-      if (status) {
-        status = beside.writer.WriteRows(ShowLayer(rows, beside.layer, beside.look, far_));
-      }
-    }
-    return status;
-  }
-
-  Status Finish() {
-    Status status = picture_.Finish();
-    for (Beside& beside : beside_) {
-      if (status) status = beside.writer.Finish();
-    }
-    return status;
-  }
-
- private:
-  struct Beside {
-    Layer layer;
-    LayerLook look;
-    PictureWriter writer;
-  };
-  explicit FrameWriter(PictureWriter picture) : picture_(std::move(picture)) {}
-
-  PictureWriter picture_;
-  std::vector<Beside> beside_;
-  double far_ = 1;  // where depth is shown: what it is black at
-};
-
 Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_path,
                                 const Frame& frame, const RenderOptions& options,
                                 std::optional<int> bits, ProgressStyle style, std::string label) {
@@ -232,7 +146,7 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_pat
   const RowSink write = [&](const Film& rows) { return writer.value().WriteRows(rows); };
   const Status rendered =
       RenderRows(scene, *frame.camera, options, write, &record.stats, watch.progress());
-  // A signal in the last tenth of a second may find the frame finished: it stops the command still.
+  // A signal in the last tenth of a second may find the frame finished. The command stops even so.
   if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {
     return Error{ErrorKind::kInterrupted,
                  fmt::format("interrupted; {} was not written", frame.path)};
@@ -253,67 +167,10 @@ Status WriteStatistics(const std::string& destination, const std::string& json) 
   return destination == "-" ? WriteStandardOutput(json) : WriteFileWhole(destination, json);
 }
 
-// "32" or "2/8".
-std::optional<TileChoice> ParseTile(const std::string& text) {
-  TileChoice tile;
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) {
-    tile.size = ParseInteger(text, 1, kMaxTileSize);
-    return tile.size ? std::optional(tile) : std::nullopt;
-  }
-  const auto parts = ParseInteger(text.substr(slash + 1), 1, kMaxImageSide);
-  const auto part = ParseInteger(text.substr(0, slash), 1, parts.value_or(1));
-  if (!parts || !part) return std::nullopt;
-  tile.part = *part;
-  tile.parts = *parts;
-  return tile;
-}
-
-}  // namespace
-
-CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request) {
-  CLI::App* render = app.add_subcommand("render", "Render a scene into pictures");
-  render->add_option("SCENE", request.scene, "The scene file")->required()->option_text(" ");
-  AddSceneOptions(*render, request.options);
-  AddCameraChoice(*render, request.choice);
-  AddOutput(*render, request.output, "PATH",
-            "The picture, .png, .pfm or .exr (needed); {camera} becomes the camera's name");
-  AddSize(*render, request.size);
-  AddInteger(*render, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
-  AddInteger(*render, "--max-depth", request.max_depth, 0, kMaxDepth,
-             "A ray deeper than this is black; primary rays have depth 0");
-  AddShare(*render, "--adaptive", request.contrast, "T",
-           "All samples only where neighbours differ by more than T; else one");
-  AddShare(*render, "--min-weight", request.min_throughput, "W",
-           "Rays that add at most this part of what they see are not traced");
-  AddParsed(*render, "--crop", request.crop, "x0,y0,x1,y1",
-            "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",
-            "Render this part alone; x1 and y1 are exclusive", &ParseRect);
-  render->add_option("--target", request.target, "SIMD target; sheaf info lists the usable ones")
-      ->option_text("auto|scalar|NAME");
-  AddPrecision(*render, request.precision);
-  AddParsed(*render, "--aov", request.layers, "LAYER[,LAYER]",
-            "a list of depth, normal, albedo, id, heat",
-            "Layers: depth, normal, albedo, id, heat; in .exr, else in files beside the picture",
-            &ParseLayers);
-  AddBits(*render, request.bits);
-  AddInteger(*render, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
-  AddParsed(*render, "--tile", request.tile, "N|I/N",
-            fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),
-            "Pixels a side of a tile, which change no picture but in fast precision; I/N: part I "
-            "of N alone",
-            &ParseTile);
-  render->add_option("--progress", request.progress, "What stderr shows meanwhile")
-      ->option_text("auto|plain|none")
-      ->check(CLI::IsMember({"auto", "plain", "none"}));
-  render->add_flag("-q,--quiet", request.quiet, "Only errors on stderr");
-  AddJson(*render, request.statistics, "Statistics as JSON to stdout, or into FILE");
-  return render;
-}
-
+// Renders every camera. Each picture is written when it is ready, the statistics at the end.
 Status RunRender(const RenderRequest& request) {
   // Whatever can be refused is refused before the work.
-  if (const Status sound = CheckRequest(request); !sound) return sound;
+  if (const Status sound = CheckCommandLine(request); !sound) return sound;
   const ProgressStyle style = ChooseProgressStyle(request);
   const Result<OpenedScene> opened = [&] {
     const ReadingNotice notice(style, request.scene);
@@ -347,5 +204,9 @@ Status RunRender(const RenderRequest& request) {
   }
   return WriteStatistics(request.statistics, StatisticsJson(request.scene, records));
 }
+
+}  // namespace
+
+Command RenderCommand() { return MakeCommand(&AddRenderOptions, &RunRender); }
 
 }  // namespace sheaf

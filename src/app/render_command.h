@@ -1,55 +1,12 @@
-// `sheaf render`: a scene file becomes pictures.
+// `sheaf render`: a scene becomes pictures.
 #ifndef SHEAF_APP_RENDER_COMMAND_H_
 #define SHEAF_APP_RENDER_COMMAND_H_
 
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "sheaf/error.h"
-#include "sheaf/render.h"
-#include "src/app/choose.h"
-#include "src/app/open_scene.h"
-#include "src/app/parse_options.h"
-
-namespace CLI {
-class App;
-}
+#include "src/app/command.h"
 
 namespace sheaf {
 
-// What --tile says: pixels a side of a tile, or which of how many parts of the picture.
-struct TileChoice {
-  std::optional<int> size;
-  int part = 0, parts = 0;  // 0 parts: the whole picture
-};
-
-// The command line as it was given. What is absent comes from the scene.
-struct RenderRequest {
-  SceneOptions options;
-  std::string scene;
-  CameraChoice choice;
-  std::string output;
-  std::optional<PixelSize> size;
-  std::optional<int> samples, max_depth;
-  std::optional<double> contrast, min_throughput;
-  std::string target = "auto";
-  std::string precision = "strict";
-  std::optional<int> threads, bits;
-  TileChoice tile;
-  std::optional<PixelRect> crop;
-  Layers layers;  // of --aov
-  std::string progress = "auto";
-  bool quiet = false;
-  std::string statistics;  // empty: none; "-": stdout; else a file
-};
-
-// Adds the subcommand; parsing then fills `request`, which has to outlive `app`.
-CLI::App* AddRenderCommand(CLI::App& app, RenderRequest& request);
-
-// Checks all that can be checked, renders every camera, writes each picture as it is ready and the
-// statistics at the end.
-Status RunRender(const RenderRequest& request);
+Command RenderCommand();
 
 }  // namespace sheaf
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "src/app/add_options.h"
@@ -17,6 +16,12 @@ namespace sheaf {
 namespace {
 
 constexpr char kRayFormat[] = "ox,oy,oz,dx,dy,dz,t_min,t_max,source";
+
+struct StressRequest {
+  std::vector<std::string> cases;  // empty: all
+  bool list = false, thorough = false;
+  std::optional<stress::Ray> replay;
+};
 
 std::vector<stress::Case> AllCases() {
   std::vector<stress::Case> cases(stress::RayCases().begin(), stress::RayCases().end());
@@ -55,21 +60,17 @@ Status CheckReplay(const StressRequest& request) {
                            request.cases.front()));
 }
 
-}  // namespace
-
-CLI::App* AddStressCommand(CLI::App& app, StressRequest& request) {
-  CLI::App* stress = app.add_subcommand("stress", "Run the stress cases of the numerics");
-  stress->add_option("CASE", request.cases, "The cases; all if absent")->option_text("...");
-  stress->add_flag("--list", request.list, "The cases and what is expected of each");
-  stress->add_flag("--thorough", request.thorough,
-                   "More and larger: all take a quarter of an hour or more");
-  AddParsed(
-      *stress, "--replay", request.replay, "RAY", fmt::format("a ray {}", kRayFormat),
-      fmt::format("Trace {}, as a failure prints it, in the one case named", kRayFormat).c_str(),
-      &stress::ParseRay);
-  return stress;
+void AddStressOptions(CLI::App& app, StressRequest& request) {
+  AddInputs(app, "CASE", request.cases, Presence::kOptional, "The cases; all if absent");
+  AddFlag(app, "--list", request.list, "The cases and what is expected of each");
+  AddFlag(app, "--thorough", request.thorough,
+          "More and larger: all take a quarter of an hour or more");
+  AddParsed(app, "--replay", request.replay, "RAY", fmt::format("a ray {}", kRayFormat),
+            fmt::format("Trace {}, as a failure prints it, in the one case named", kRayFormat),
+            &stress::ParseRay);
 }
 
+// kDifferent where a case fails.
 Result<ExitCode> RunStress(const StressRequest& request) {
   const auto cases = ChooseCases(request.cases);
   if (!cases) return cases.error();
@@ -106,5 +107,9 @@ Result<ExitCode> RunStress(const StressRequest& request) {
   if (!written) return written.error();
   return failed == 0 ? ExitCode::kOk : ExitCode::kDifferent;
 }
+
+}  // namespace
+
+Command StressCommand() { return MakeCommand(&AddStressOptions, &RunStress); }
 
 }  // namespace sheaf

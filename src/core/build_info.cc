@@ -3,9 +3,23 @@
 #include "sheaf/version.h"
 
 namespace sheaf {
+namespace {
+
+#ifdef SHEAF_HAS_OPENEXR
+constexpr bool kHasOpenExr = true;
+#else
+constexpr bool kHasOpenExr = false;
+#endif
+
+constexpr OptionalPart kOptionalParts[] = {
+    {"OpenEXR", "reads and writes .exr", kHasOpenExr},
+};
+
+}  // namespace
 
 const char* LibraryVersion() { return kVersion; }
 const char* CompilerName() { return SHEAF_COMPILER; }
 const char* BuildTypeName() { return SHEAF_BUILD_TYPE; }
+std::span<const OptionalPart> OptionalParts() { return kOptionalParts; }
 
 }  // namespace sheaf

@@ -2,10 +2,22 @@
 #ifndef SHEAF_CORE_BUILD_INFO_H_
 #define SHEAF_CORE_BUILD_INFO_H_
 
+#include <span>
+
 namespace sheaf {
 
 const char* CompilerName();   // with its version
 const char* BuildTypeName();  // CMake's, e.g. "Release"
+
+// A part that a build may lack.
+struct OptionalPart {
+  const char* name;
+  const char* purpose;
+  bool is_built_in;
+};
+
+// All of them, whether built in or not.
+std::span<const OptionalPart> OptionalParts();
 
 }  // namespace sheaf
 

@@ -1,0 +1,33 @@
+// The verdict of `sheaf bench` against an earlier run.
+#ifndef SHEAF_APP_BENCH_BASELINE_H_
+#define SHEAF_APP_BENCH_BASELINE_H_
+
+#include <cstdint>
+#include <string>
+
+#include "sheaf/error.h"
+#include "src/app/bench_report.h"
+#include "src/app/exit_code.h"
+
+namespace sheaf {
+
+// What an earlier run wrote with --json.
+Result<BenchReport> ReadBaseline(const std::string& path);
+
+// kUsage where the baseline, read from `path`, has another scene, camera, size or samples.
+Status CheckSameFrame(const std::string& path, const BenchReport& now, const BenchReport& before);
+
+// kUsage where it traced another number of rays. That shows another viewpoint, or another scene of
+// the same name: no target changes the number.
+Status CheckSameRays(const std::string& path, std::uint64_t rays, const BenchReport& before);
+
+// What is judged: ratios to the scalar baseline of the same run where both runs have it, because
+// the clock of a machine drifts from run to run; or seconds.
+enum class Yardstick { kScalar, kSeconds };
+
+// Gives every row its verdict. kDifferent where one became slower.
+ExitCode JudgeRows(const BenchReport& before, Yardstick yardstick, BenchReport& now);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_BENCH_BASELINE_H_

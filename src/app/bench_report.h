@@ -1,0 +1,50 @@
+// What `sheaf bench` measured, as a table and as JSON.
+#ifndef SHEAF_APP_BENCH_REPORT_H_
+#define SHEAF_APP_BENCH_REPORT_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/render.h"
+
+namespace sheaf {
+
+inline constexpr int kPhases = static_cast<int>(Phase::kCount);
+
+// One target on one number of threads.
+struct BenchRow {
+  std::string target;
+  int threads = 1;
+  std::size_t lanes = 1;
+  std::uint64_t rays = 0;
+  std::vector<double> seconds;          // by repetition, not empty once measured
+  std::vector<double> phases[kPhases];  // the same; summed over threads
+  std::string verdict;                  // against the baseline; empty without one
+};
+
+struct BenchReport {
+  std::string scene, camera;
+  int width = 0, height = 0, samples = 0;
+  std::vector<BenchRow> rows;
+};
+
+// Null where there is none.
+const BenchRow* FindRow(const BenchReport& report, const std::string& target, int threads);
+
+// What a row took in each repetition, in times of the scalar baseline next to it.
+std::vector<double> InScalars(const BenchRow& row, const BenchRow& scalar);
+
+// The tables for a person: rays a second, then milliseconds by phase.
+std::string BenchText(const BenchReport& report);
+
+// What --json writes, and the same read again. `path` is for messages; phases, lanes and verdicts
+// are not read.
+std::string BenchJson(const BenchReport& report);
+Result<BenchReport> ParseBenchJson(const std::string& path, const std::string& text);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_BENCH_REPORT_H_

@@ -1,0 +1,24 @@
+#include "src/app/bench_request.h"
+
+#include "src/app/add_options.h"
+
+namespace sheaf {
+
+void AddBenchOptions(CLI::App& app, BenchRequest& request) {
+  AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
+  AddSceneOptions(app, request.options);
+  AddName(app, "--camera", request.camera, "NAME", "The camera; the scene's first if absent");
+  AddSize(app, request.size);
+  AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
+  AddTargets(app, request.targets, "What renders; all: every usable one and scalar");
+  AddThreads(app, request.threads);
+  AddInteger(app, "--repetitions", request.repetitions, 1, 1000,
+             "Frames of each row, taken in turn; 9 if absent, from 6 with a 95 % interval");
+  AddPath(app, "--baseline", request.baseline, "FILE",
+          "A file that --json wrote, to judge against");
+  AddFlag(app, "--absolute", request.absolute,
+          "Judge seconds, not ratios to the scalar baseline of the same run");
+  AddJson(app, request.json, "The result as JSON to stdout, or into FILE");
+}
+
+}  // namespace sheaf

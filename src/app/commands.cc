@@ -1,0 +1,47 @@
+#include "src/app/commands.h"
+
+#include "src/app/bench_command.h"
+#include "src/app/check_command.h"
+#include "src/app/compare_command.h"
+#include "src/app/convert_command.h"
+#include "src/app/info_command.h"
+#include "src/app/merge_command.h"
+#include "src/app/pareto_command.h"
+#include "src/app/render_command.h"
+#include "src/app/stress_command.h"
+
+namespace sheaf {
+namespace {
+
+constexpr CommandEntry kCommands[] = {
+    {"render", "Render a scene into pictures",
+     "  sheaf render scene.json -o picture.png\n"
+     "  sheaf render scene.json --views seven -o 'out/{camera}.png'\n"
+     "  sheaf render scene.json --camera front --size 1280x960 --json -o front.pfm\n"
+     "  sheaf render model.glb -o model.exr --aov depth,normal\n"
+     "  sheaf render scene.json --tile 2/8 -o part2.png\n",
+     &RenderCommand},
+    {"merge", "Join what --tile I/N or --crop rendered into the whole picture",
+     "  sheaf merge part1.png part2.png ... -o whole.png\n", &MergeCommand},
+    {"convert", "Turn a scene or model into scene JSON, or a picture into another format",
+     "  sheaf convert scene.nff -o scene.json\n", &ConvertCommand},
+    {"check", "Validate scenes and say what rendering them would skip",
+     "  sheaf check scene.json\n", &CheckCommand},
+    {"compare", "Compare targets and threads on a scene bit by bit, or pictures by metrics",
+     "  sheaf compare scene.json --targets all --threads 1,2\n"
+     "  sheaf compare expected.png found.png --fail psnr=40\n",
+     &CompareCommand},
+    {"bench", "Time a scene on every SIMD target",
+     "  sheaf bench scene.json --baseline before.json\n", &BenchCommand},
+    {"pareto", "Chart run time against error over a scene's settings",
+     "  sheaf pareto scene.json -o report/\n", &ParetoCommand},
+    {"stress", "Run the stress cases of the numerics", "  sheaf stress\n", &StressCommand},
+    {"info", "Show this build and its SIMD targets, or a scene", "  sheaf info scene.json\n",
+     &InfoCommand},
+};
+
+}  // namespace
+
+std::span<const CommandEntry> Commands() { return kCommands; }
+
+}  // namespace sheaf

@@ -1,0 +1,74 @@
+#include "src/app/frame_writer.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace sheaf {
+namespace {
+
+// What `sheaf merge` compares to see that parts belong to one picture. It names the camera's place,
+// because the command line may have moved the camera.
+std::string SettingsText(const RenderOptions& options, const Camera& camera) {
+  const Vec3d& eye = camera.eye;
+  const Vec3d& look_at = camera.look_at;
+  const auto* perspective = std::get_if<Perspective>(&camera.projection);
+  const double view =
+      perspective ? perspective->fov_y : std::get<Orthographic>(camera.projection).height;
+  return fmt::format(
+      "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
+      "eye {} {} {}, look at {} {} {}, {} {}",
+      options.width, options.height, options.samples, options.max_depth,
+      PrecisionName(options.precision), options.min_throughput,
+      options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
+      eye.z, look_at.x, look_at.y, look_at.z, perspective ? "fov" : "height", view);
+}
+
+}  // namespace
+
+Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
+                                        const RenderOptions& options, std::optional<int> bits,
+                                        const std::string& scene_path) {
+  PictureSpec spec = WholePicture(options.width, options.height, scene.settings.transfer);
+  if (options.crop) spec.window = *options.crop;
+  spec.bits = bits.value_or(0);
+  spec.metadata = {{"Scene", scene_path},
+                   {"Camera", frame.camera->name},
+                   {"Settings", SettingsText(options, *frame.camera)}};
+  if (HoldsLayers(frame.path)) spec.layers = options.layers;
+  Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
+  if (!picture) return picture.error();
+  FrameWriter writer(std::move(picture).value());
+  for (const auto& [layer, path] : frame.beside) {
+    if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
+    if (layer == Layer::kHeat) continue;  // known when all tiles are
+    PictureSpec beside = spec;
+    beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
+    if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
+    Result<PictureWriter> created = PictureWriter::Create(path, beside);
+    if (!created) return created.error();
+    const LayerLook look = HoldsFloats(path) ? LayerLook::kNumbers : LayerLook::kDisplay;
+    writer.beside_.push_back({layer, look, std::move(created).value()});
+  }
+  return writer;
+}
+
+Status FrameWriter::WriteRows(const Film& rows) {
+  Status status = picture_.WriteRows(rows);
+  for (Beside& beside : beside_) {
+    if (status) {
+      status = beside.writer.WriteRows(ShowLayer(rows, beside.layer, beside.look, far_));
+    }
+  }
+  return status;
+}
+
+Status FrameWriter::Finish() {
+  Status status = picture_.Finish();
+  for (Beside& beside : beside_) {
+    if (status) status = beside.writer.Finish();
+  }
+  return status;
+}
+
+}  // namespace sheaf

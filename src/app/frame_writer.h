@@ -1,0 +1,51 @@
+// Writes a frame's picture row by row, and its layers beside it.
+#ifndef SHEAF_APP_FRAME_WRITER_H_
+#define SHEAF_APP_FRAME_WRITER_H_
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/film.h"
+#include "sheaf/render.h"
+#include "sheaf/scene.h"
+#include "src/app/layer_picture.h"
+#include "src/formats/picture.h"
+
+namespace sheaf {
+
+// One picture to make.
+struct Frame {
+  const Camera* camera;
+  std::string path;
+  std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
+};
+
+// The picture of a frame, and its layers where they have files of their own.
+class FrameWriter {
+ public:
+  static Result<FrameWriter> Create(const Scene& scene, const Frame& frame,
+                                    const RenderOptions& options, std::optional<int> bits,
+                                    const std::string& scene_path);
+
+  Status WriteRows(const Film& rows);
+  Status Finish();
+
+ private:
+  struct Beside {
+    Layer layer;
+    LayerLook look;
+    PictureWriter writer;
+  };
+  explicit FrameWriter(PictureWriter picture) : picture_(std::move(picture)) {}
+
+  PictureWriter picture_;
+  std::vector<Beside> beside_;
+  double far_ = 1;  // where depth is shown: what it is black at
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_FRAME_WRITER_H_

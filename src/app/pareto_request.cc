@@ -1,0 +1,41 @@
+#include "src/app/pareto_request.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <limits>
+
+#include "src/app/add_options.h"
+
+namespace sheaf {
+
+void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
+  AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
+  AddSceneOptions(app, request.options);
+  AddCameraChoice(app, request.choice);
+  AddOutput(app, request.output, "FOLDER", "The folder for the report (needed)");
+  AddSize(app, request.size);
+  AddParsed(app, "--reference-spp", request.reference_samples, "N",
+            fmt::format("a whole number above the {} samples of a setting, up to {}",
+                        kMostParetoSamples, kMaxSamples),
+            "Samples a pixel of the converged picture, in double, above 64; 256 if absent",
+            [](const std::string& text) {
+              return ParseInteger(text, kMostParetoSamples + 1, kMaxSamples);
+            });
+  AddInteger(app, "--repetitions", request.repetitions, 1, 1000,
+             "Frames of each setting, of which the median counts; 3 if absent");
+  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 1 if absent");
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  const auto parse = [](const std::string& text) { return ParseNumber(text, 0, kMost); };
+  AddParsed(app, "--error", request.error, "E", "a number from 0",
+            "Name the cheapest setting of at most this RMSE", parse);
+  AddParsed(app, "--time", request.time, "SECONDS", "a number from 0",
+            "Name the best setting that takes at most this long", parse);
+  AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
+}
+
+void Say(const ParetoRequest& request, const std::string& line) {
+  if (!request.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace sheaf

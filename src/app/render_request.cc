@@ -1,0 +1,66 @@
+#include "src/app/render_request.h"
+
+#include <fmt/format.h>
+
+#include "src/app/add_options.h"
+#include "src/app/layer_picture.h"
+
+namespace sheaf {
+namespace {
+
+// "32" or "2/8".
+std::optional<TileChoice> ParseTile(const std::string& text) {
+  TileChoice tile;
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) {
+    tile.size = ParseInteger(text, 1, kMaxTileSize);
+    return tile.size ? std::optional(tile) : std::nullopt;
+  }
+  const auto parts = ParseInteger(text.substr(slash + 1), 1, kMaxImageSide);
+  const auto part = ParseInteger(text.substr(0, slash), 1, parts.value_or(1));
+  if (!parts || !part) return std::nullopt;
+  tile.part = *part;
+  tile.parts = *parts;
+  return tile;
+}
+
+}  // namespace
+
+void AddRenderOptions(CLI::App& app, RenderRequest& request) {
+  AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
+  AddSceneOptions(app, request.options);
+  AddCameraChoice(app, request.choice);
+  AddOutput(app, request.output, "PATH",
+            "The picture, .png, .pfm or .exr (needed); {camera} becomes the camera's name");
+  AddSize(app, request.size);
+  AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
+  AddInteger(app, "--max-depth", request.max_depth, 0, kMaxDepth,
+             "A ray deeper than this is black; primary rays have depth 0");
+  AddShare(app, "--adaptive", request.contrast, "T",
+           "All samples only where neighbours differ by more than T; else one");
+  AddShare(app, "--min-weight", request.min_throughput, "W",
+           "Rays that add at most this part of what they see are not traced");
+  AddParsed(app, "--crop", request.crop, "x0,y0,x1,y1",
+            "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",
+            "Render this part alone; x1 and y1 are exclusive", &ParseRect);
+  AddName(app, "--target", request.target, "auto|scalar|NAME",
+          "SIMD target; sheaf info lists the usable ones");
+  AddPrecision(app, request.precision);
+  AddParsed(app, "--aov", request.layers, "LAYER[,LAYER]",
+            "a list of depth, normal, albedo, id, heat",
+            "Layers: depth, normal, albedo, id, heat; in .exr, else in files beside the picture",
+            &ParseLayers);
+  AddBits(app, request.bits);
+  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddParsed(app, "--tile", request.tile, "N|I/N",
+            fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),
+            "Pixels a side of a tile, which change no picture but in fast precision; I/N: part I "
+            "of N alone",
+            &ParseTile);
+  AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
+            "What stderr shows meanwhile");
+  AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
+  AddJson(app, request.statistics, "Statistics as JSON to stdout, or into FILE");
+}
+
+}  // namespace sheaf

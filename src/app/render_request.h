@@ -1,0 +1,50 @@
+// What the command line of `sheaf render` asks for.
+#ifndef SHEAF_APP_RENDER_REQUEST_H_
+#define SHEAF_APP_RENDER_REQUEST_H_
+
+#include <optional>
+#include <string>
+
+#include "sheaf/render.h"
+#include "src/app/choose.h"
+#include "src/app/open_scene.h"
+#include "src/app/parse_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sheaf {
+
+// What --tile says: pixels a side of a tile, or which of how many parts of the picture.
+struct TileChoice {
+  std::optional<int> size;
+  int part = 0, parts = 0;  // 0 parts: the whole picture
+};
+
+// The command line as it was given. What is absent comes from the scene.
+struct RenderRequest {
+  SceneOptions options;
+  std::string scene;
+  CameraChoice choice;
+  std::string output;
+  std::optional<PixelSize> size;
+  std::optional<int> samples, max_depth;
+  std::optional<double> contrast, min_throughput;
+  std::string target = "auto";
+  std::string precision = "strict";
+  std::optional<int> threads, bits;
+  TileChoice tile;
+  std::optional<PixelRect> crop;
+  Layers layers;  // of --aov
+  std::string progress = "auto";
+  bool quiet = false;
+  std::string statistics;  // empty: none; "-": stdout; else a file
+};
+
+// Parsing then fills `request`, which has to outlive `app`.
+void AddRenderOptions(CLI::App& app, RenderRequest& request);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_RENDER_REQUEST_H_

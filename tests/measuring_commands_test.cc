@@ -1,0 +1,273 @@
+// The commands that measure: compare, bench, pareto, stress.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "src/formats/pfm.h"
+#include "src/lab/has_program.h"
+#include "tests/run_command.h"
+
+namespace sheaf {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+TEST_CASE("compare finds no bit that differs between targets and threads") {
+  const Workspace work;
+  const Outcome all = work.Run(
+      {"compare", kScene, "--size", "61x47", "--views", "sides", "--threads", "1,2", "--json"});
+  REQUIRE(all.code == 0);
+  const json result = json::parse(all.out);
+  CHECK(result["reference"] == "scalar, 1 thread");
+  REQUIRE(result["runs"].size() >= 2 * (2 + 3));  // both cameras; two targets besides the scalar
+  for (const json& run : result["runs"]) CHECK(run["pixels"] == 0);
+  CHECK(result["runs"][0]["target"] != "scalar");
+
+  const Outcome text = work.Run({"compare", kScene, "--size", "8x8", "--targets", "scalar,auto"});
+  CHECK(text.code == 0);
+  CHECK(Contains(text.out, "1 thread: same bits\n"));
+  CHECK(Contains(text.out, "0 of 1 renderings differ from scalar, 1 thread\n"));
+  for (const auto& wrong :
+       std::vector<std::vector<std::string>>{{"compare", kScene, "--targets", "scalar"},
+                                             {"compare", kScene, "--targets", "scalar,avx9"},
+                                             {"compare", kScene, "--threads", "0"},
+                                             {"compare", kScene, "--precision", "fast"},
+                                             {"compare", kScene, "--targets", "all,scalar"},
+                                             {"compare", kScene, "--fail", "rmse=1"},
+                                             {"compare", kScene, "--transfer", "srgb"},
+                                             {"compare", kScene, kScene},
+                                             {"compare", kScene, "--camera", "frnt"}}) {
+    const Outcome outcome = work.Run(wrong);
+    CHECK(outcome.code == 2);
+    CHECK(LineCount(outcome.err) == 1);
+  }
+}
+
+TEST_CASE("compare measures pictures, and --fail decides") {
+  const Workspace work;
+  Film a(8, 4), b(8, 4);
+  std::fill(a.rgb.begin(), a.rgb.end(), 0.5f);
+  b.rgb = a.rgb;
+  b.pixel(3, 1)[1] = 1.0f;
+  REQUIRE(WritePfm(a, work / "a.pfm").ok());
+  REQUIRE(WritePfm(b, work / "b.pfm").ok());
+  const Outcome measured =
+      work.Run({"compare", work / "a.pfm", work / "b.pfm", work / "a.pfm", "--json"});
+  REQUIRE(measured.code == 0);
+  const json pictures = json::parse(measured.out)["pictures"];
+  REQUIRE(pictures.size() == 2);
+  CHECK(pictures[0]["rmse"].get<double>() == doctest::Approx(std::sqrt(0.25 / 96)));
+  CHECK(pictures[0]["psnr"].get<double>() == doctest::Approx(-10 * std::log10(0.25 / 96)));
+  CHECK(pictures[0]["largest"] == 0.5);
+  CHECK(pictures[0]["over"].is_number_integer());
+  CHECK(pictures[0]["over"] == 1);
+  CHECK(pictures[0]["identical"] == false);
+  CHECK(pictures[0]["finite"] == true);
+  CHECK(pictures[0]["flip"].get<double>() > 0);
+  CHECK(pictures[1]["rmse"] == 0);
+  CHECK(pictures[1]["flip"] == 0);
+  CHECK(pictures[1]["psnr"].is_null());
+  CHECK(pictures[1]["identical"] == true);
+  const auto judge = [&](const std::string& limits) {
+    return work.Run({"compare", work / "a.pfm", work / "b.pfm", "--fail", limits});
+  };
+  CHECK(judge("over=1,psnr=25").code == 0);
+  CHECK(judge("over=0").code == 1);
+  CHECK(judge("psnr=26").code == 1);
+  CHECK(Contains(judge("over=0").out, "over 1 breaks the limit of 0"));
+  CHECK(Contains(judge("rmse=1,over=0,psnr=26").out,
+                 "; over 1 breaks the limit of 0, psnr 25.8433 breaks the limit of 26\n"));
+  const Outcome several = work.Run(
+      {"compare", work / "a.pfm", work / "b.pfm", "--json", "--fail", "largest=0.25,rmse=0"});
+  CHECK(json::parse(several.out)["pictures"][0]["broken"].size() == 2);
+
+  // NaN passes no limit, though it equals itself; white against black is 0 dB.
+  Film nan = a, black(8, 4), white(8, 4);
+  nan.rgb[5] = std::nanf("");
+  std::fill(black.rgb.begin(), black.rgb.end(), 0.0f);
+  std::fill(white.rgb.begin(), white.rgb.end(), 1.0f);
+  REQUIRE(WritePfm(nan, work / "nan.pfm").ok());
+  REQUIRE(WritePfm(black, work / "black.pfm").ok());
+  REQUIRE(WritePfm(white, work / "white.pfm").ok());
+  const Outcome not_finite =
+      work.Run({"compare", work / "nan.pfm", work / "nan.pfm", "--fail", "over=100000", "--json"});
+  CHECK(not_finite.code == 1);
+  const json entry = json::parse(not_finite.out)["pictures"][0];
+  CHECK(entry["identical"] == true);
+  CHECK(entry["finite"] == false);
+  CHECK(work.Run({"compare", work / "a.pfm", work / "nan.pfm"}).code == 0);
+  REQUIRE(WritePfm(a, work / "e\x1b[31m.pfm").ok());
+  const Outcome odd = work.Run({"compare", work / "a.pfm", work / "e\x1b[31m.pfm"});
+  CHECK(odd.code == 0);
+  CHECK(!Contains(odd.out, "\x1b"));
+  CHECK(
+      Contains(work.Run({"compare", work / "black.pfm", work / "white.pfm"}).out, "psnr 0.00 dB"));
+  CHECK(judge("psnr").code == 2);
+  CHECK(judge("beauty=1").code == 2);
+  CHECK(work.Run({"compare", work / "a.pfm"}).code == 2);
+  CHECK(work.Run({"compare", work / "a.pfm", work / "none.pfm"}).code == 4);
+}
+
+TEST_CASE("bench measures every target and judges against an earlier run") {
+  const Workspace work;
+  const std::string before = work / "before.json";
+  const std::vector<std::string> bench = {"bench", kScene, "--size", "64x48", "--repetitions", "5"};
+  auto arguments = bench;
+  arguments.push_back("--json=" + before);
+  const Outcome first = work.Run(arguments);
+  REQUIRE(first.code == 0);
+  CHECK(Contains(first.out, "range of all"));
+  CHECK(!Contains(first.out, "95 % interval"));
+  json report = json::parse(ReadText(before));
+  REQUIRE(report["rows"].size() >= 3);
+  CHECK(report["rows"][0]["target"] == "scalar");
+  for (const json& row : report["rows"]) {
+    CHECK(row["seconds"].size() == 5);
+    const json& rate = row["rays_per_second"];
+    CHECK(rate["interval"] == "range");
+    CHECK(rate["low"] <= rate["median"]);
+    CHECK(rate["median"] <= rate["high"]);
+    CHECK(row["rays"] == report["rows"][0]["rays"]);
+    CHECK(row["over_scalar"].get<double>() > 0);
+  }
+  // Against itself made a hundred times as fast, and a hundred times as slow; no clock decides.
+  const auto judge = [&](double factor) {
+    json changed = report;
+    for (json& row : changed["rows"]) {
+      std::vector<double> seconds;
+      for (int i = 0; i < 9; ++i) seconds.push_back(factor * (1 + 1e-4 * i));
+      row["seconds"] = seconds;
+    }
+    WriteText(before, changed.dump());
+    auto again = bench;
+    again.insert(again.end(), {"--targets", "auto", "--baseline", before, "--absolute", "--json"});
+    return work.Run(again);
+  };
+  // A row that is too noisy gets no verdict, rightly: then there is nothing to check.
+  const auto verdict = [](const Outcome& outcome) {
+    return json::parse(outcome.out)["rows"][0]["verdict"].get<std::string>();
+  };
+  const Outcome slower = judge(1e-6), faster = judge(1e6);
+  if (!Contains(verdict(slower), "noisy")) {
+    CHECK(Contains(verdict(slower), "slower"));
+    CHECK(slower.code == 1);
+  }
+  if (!Contains(verdict(faster), "noisy")) CHECK(Contains(verdict(faster), "faster"));
+  CHECK(faster.code == 0);
+  auto few = bench;
+  few.insert(few.end(), {"--targets", "auto", "--baseline", before});
+  few[5] = "2";
+  CHECK(Contains(work.Run(few).out, "too few repetitions"));
+  few[5] = "6";
+  CHECK(Contains(work.Run(few).out, "95 % interval"));
+
+  // Another frame, as far as the file tells.
+  few[5] = "1";
+  const auto refuse = [&](const json& changed, const char* says) {
+    WriteText(before, changed.dump());
+    const Outcome outcome = work.Run(few);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(Contains(outcome.err, says));
+  };
+  json changed = report;
+  changed["scene"] = "elsewhere/other.json";
+  refuse(changed, "its scene is \"other.json\"");
+  changed = report;
+  for (json& row : changed["rows"]) row["rays"] = 1;
+  refuse(changed, "its number of rays is 1");
+  // The result replaces nothing that was read.
+  WriteText(before, report.dump());
+  few.push_back("--json=" + before);
+  CHECK(work.Run(few).code == 2);
+  CHECK(json::parse(ReadText(before)) == report);
+  const std::string scene = work / "scene.json";
+  fs::copy_file(kScene, scene);
+  CHECK(work.Run({"bench", scene, "--size", "8x8", "--repetitions", "1", "--json=" + scene}).code ==
+        2);
+  CHECK(ReadText(scene) == ReadText(kScene));
+  few.pop_back();
+
+  WriteText(before, "{}");
+  few[5] = "1";
+  CHECK(work.Run(few).code == 4);
+  CHECK(work.Run({"bench", kScene, "--baseline", work / "none"}).code == 4);
+  CHECK(work.Run({"bench", kScene, "--targets", "avx9"}).code == 2);
+}
+
+TEST_CASE("pareto charts time against error") {
+  const Workspace work;
+  const Outcome outcome =
+      work.Run({"pareto", kScene, "--size", "24x18", "--reference-spp", "65", "--repetitions", "1",
+                "--error", "0.05", "--time", "1e9", "-o", work / "report"});
+  REQUIRE(outcome.code == 0);
+  CHECK(Contains(outcome.out, "cheapest for error 0.05: "));
+  const json report = json::parse(ReadText(work / "report/front.json"));
+  CHECK(report["reference_samples"] == 65);
+  double least = 1, best_on_front = 1;
+  int on_front = 0;
+  for (const json& point : report["points"]) {
+    const double error = point["error"], sampling = point["sampling"];
+    if (point["front"]) {
+      ++on_front;
+      best_on_front = std::min(best_on_front, error);
+    }
+    if (point["renderer"] == "POV-Ray") {
+      CHECK(point["numeric"].is_null());
+      // So small a frame takes a few of the milliseconds that it tells.
+      const bool is_timed = point["seconds"].is_number();
+      if (is_timed) CHECK(point["seconds"].get<double>() >= 0.01);
+      if (!is_timed) CHECK(point["front"] == false);
+      continue;
+    }
+    least = std::min(least, error);
+    const double numeric = point["numeric"];
+    CHECK(point["seconds"].get<double>() > 0);
+    // The two parts of an error bound it.
+    CHECK(error <= numeric + sampling + 1e-12);
+    CHECK(error > 0);  // no setting has the reference's own samples
+    if (point["setting"] == "strict, 1 spp, depth 5") CHECK(error > 0.01);
+  }
+  CHECK(report["points"].size() > 200);
+  CHECK(on_front >= 2);
+  CHECK(best_on_front <= least);
+  const std::string csv = ReadText(work / "report/front.csv");
+  CHECK(LineCount(csv) == report["points"].size() + 1);
+  if (HasProgram("gnuplot")) {
+    CHECK(fs::exists(work / "report/front.svg"));
+    CHECK(fs::exists(work / "report/front.png"));
+  }
+  CHECK(work.Run({"pareto", kScene, "-o", "/proc/none"}).code == 4);
+  WriteText(work / "a.png", "no folder");
+  const Outcome file = work.Run({"pareto", kScene, "-o", work / "a.png"});
+  CHECK(file.code == 4);
+  CHECK(Contains(file.err, (work / "a.png") + ": no folder can be made there"));
+  CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--error", "-1"}).code == 2);
+}
+
+TEST_CASE("stress runs every case, and one ray again") {
+  const Workspace work;
+  const Outcome list = work.Run({"stress", "--list"});
+  CHECK(list.code == 0);
+  CHECK(LineCount(list.out) >= 50);
+  const Outcome all = work.Run({"stress"});
+  CHECK_MESSAGE(all.code == 0, all.out);
+  CHECK(LineCount(all.out) == LineCount(list.out) + 1);
+  CHECK(Contains(all.out, "0 of "));
+  const Outcome replayed =
+      work.Run({"stress", "on-sphere", "--replay", "0,0,0x1.8p+1,0,0,-0x1p+0,0,0x1p+9,2147483647"});
+  CHECK(replayed.code == 0);
+  CHECK(Contains(replayed.out, "primitive 0, t 0x1p+1"));
+  CHECK(Contains(work.Run({"stress", "on-spere"}).err, "did you mean \"on-sphere\"?"));
+  CHECK(Contains(work.Run({"stress", "--help"}).out, "ox,oy,oz,dx,dy,dz,t_min,t_max,source"));
+  CHECK(work.Run({"stress", "--replay", "0,0,3,0,0,-1,0,1,0"}).code == 2);
+}
+
+}  // namespace
+}  // namespace sheaf
