@@ -16,6 +16,7 @@
 #include "sheaf/render.h"
 #include "src/formats/picture.h"
 #include "src/formats/png.h"
+#include "src/formats/quantize.h"
 #include "src/formats/scene_json.h"
 #include "src/lab/has_program.h"
 #include "targets.h"

@@ -27,6 +27,7 @@
 #include "src/core/atomic_file.h"
 #include "src/formats/pfm.h"
 #include "src/formats/png.h"
+#include "src/formats/quantize.h"
 
 namespace sheaf {
 namespace {

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <climits>
 
+#include "src/formats/format_table.h"
+
 namespace sheaf {
 
 void AddText(CLI::App& app, const char* name, const char* placeholder, const std::string& expected,
@@ -85,7 +87,7 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
 }
 
 void AddBits(CLI::App& app, std::optional<int>& bits) {
-  AddInteger(app, "--bits", bits, 8, 32, "Of a channel: 8 or 16 of .png, 16 or 32 of .exr");
+  AddInteger(app, "--bits", bits, 8, 32, ("Of a channel: " + BitsText()).c_str());
 }
 
 void AddPrecision(CLI::App& app, std::string& name, const char* placeholder) {

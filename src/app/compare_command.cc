@@ -6,6 +6,7 @@
 #include "src/app/compare_pictures.h"
 #include "src/app/compare_renderings.h"
 #include "src/app/compare_request.h"
+#include "src/formats/format_table.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
 
@@ -31,8 +32,8 @@ Result<ExitCode> RunCompare(const CompareRequest& request) {
   if (const Status heard = CheckOptions(*request.command, mode); !heard) return heard.error();
   if (mode == Mode::kPictures) return ComparePictures(request);
   if (request.inputs.size() > 1) {
-    return Usage(fmt::format("{}: no .png, .pfm or .exr, and of scenes there can be only one",
-                             PrintablePath(request.inputs.front())));
+    return Usage(fmt::format("{}: no {}, and of scenes there can be only one",
+                             PrintablePath(request.inputs.front()), PictureEndings()));
   }
   return CompareRenderings(request);
 }

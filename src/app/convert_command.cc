@@ -10,7 +10,9 @@
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
 #include "src/core/atomic_file.h"
+#include "src/formats/format_table.h"
 #include "src/formats/picture.h"
+#include "src/formats/png.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
 #include "src/formats/write_scene_json.h"
@@ -79,8 +81,10 @@ Status ConvertScene(const ConvertRequest& request) {
                              request.bits ? "--bits" : "--transfer", PrintablePath(request.input)));
   }
   if (!IsScenePath(request.output) || IsModelPath(request.output)) {
-    return Usage(
-        fmt::format("-o {}: a scene becomes scene JSON, whose name ends in .json", request.output));
+    return Usage(fmt::format("-o {}: a scene becomes scene JSON, whose name ends in {}",
+                             request.output, EndingsText([](const FileFormat& format) {
+                               return format.content == FileContent::kScene;
+                             })));
   }
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
   Result<OpenedScene> opened = OpenSceneAndFiles(request.input, request.options);
@@ -161,10 +165,8 @@ Status RunConvert(const ConvertRequest& request) {
   if (!apart) return apart;
   if (CheckPicturePath(request.input)) return ConvertPicture(request);
   if (IsScenePath(request.input)) return ConvertScene(request);
-  return Usage(
-      fmt::format("{}: neither a scene (.json, .nff, .obj, .ply, .gltf, .glb) nor a "
-                  "picture (.png, .pfm, .exr)",
-                  request.input));
+  return Usage(fmt::format("{}: neither a scene ({}) nor a picture ({})", request.input,
+                           SceneEndings(), PictureEndings()));
 }
 
 }  // namespace

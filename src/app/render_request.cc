@@ -4,6 +4,7 @@
 
 #include "src/app/add_options.h"
 #include "src/app/layer_picture.h"
+#include "src/formats/format_table.h"
 
 namespace sheaf {
 namespace {
@@ -30,8 +31,9 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
   AddSceneOptions(app, request.options);
   AddCameraChoice(app, request.choice);
-  AddOutput(app, request.output, "PATH",
-            "The picture, .png, .pfm or .exr (needed); {camera} becomes the camera's name");
+  const std::string picture = fmt::format(
+      "The picture, {} (needed); {{camera}} becomes the camera's name", PictureEndings());
+  AddOutput(app, request.output, "PATH", picture.c_str());
   AddSize(app, request.size);
   AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddInteger(app, "--max-depth", request.max_depth, 0, kMaxDepth,
@@ -46,10 +48,11 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   AddName(app, "--target", request.target, "auto|scalar|NAME",
           "SIMD target; sheaf info lists the usable ones");
   AddPrecision(app, request.precision);
+  const std::string layers = fmt::format(
+      "Layers: depth, normal, albedo, id, heat; in {}, else in files beside the picture",
+      EndingsText([](const FileFormat& format) { return format.holds_layers; }));
   AddParsed(app, "--aov", request.layers, "LAYER[,LAYER]",
-            "a list of depth, normal, albedo, id, heat",
-            "Layers: depth, normal, albedo, id, heat; in .exr, else in files beside the picture",
-            &ParseLayers);
+            "a list of depth, normal, albedo, id, heat", layers.c_str(), &ParseLayers);
   AddBits(app, request.bits);
   AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
   AddParsed(app, "--tile", request.tile, "N|I/N",

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -106,11 +109,9 @@ Imath::half ToHalf(float value) {
   return Imath::half(std::isfinite(value) ? std::clamp(value, -kMost, kMost) : value);
 }
 
-}  // namespace
-
-class ExrWriter::Encoder {
+class ExrEncoder : public PictureEncoder {
  public:
-  Encoder(AtomicFile file, const std::string& path, const PictureSpec& spec)
+  ExrEncoder(AtomicFile file, const std::string& path, const PictureSpec& spec)
       : path_(path), spec_(spec), stream_(std::move(file), path), channels_(ChannelsOf(spec)) {}
 
   Status Begin() {
@@ -131,7 +132,7 @@ class ExrWriter::Encoder {
     });
   }
 
-  Status WriteRows(const Film& rows) {
+  Status WriteRows(const Film& rows) override {
     for (int y = 0; y < rows.height; ++y) {
       Keep(rows, y);
       ++row_;
@@ -141,7 +142,7 @@ class ExrWriter::Encoder {
     return Done{};
   }
 
-  Status Finish() {
+  Status Finish() override {
     const Status ended = Guard([this] { file_.reset(); });
     return ended ? stream_.Commit() : ended;
   }
@@ -210,20 +211,118 @@ class ExrWriter::Encoder {
   std::optional<Imf::TiledOutputFile> file_;  // last: its destructor writes to the stream
 };
 
-ExrWriter::ExrWriter(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}
-ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
-ExrWriter::~ExrWriter() = default;
+// ---- Reading ----
 
-Result<ExrWriter> ExrWriter::Create(const std::string& path, const PictureSpec& spec) {
-  Result<AtomicFile> file = AtomicFile::Create(path);
-  if (!file) return file.error();
-  auto encoder = std::make_unique<Encoder>(std::move(file).value(), path, spec);
-  if (const Status begun = encoder->Begin(); !begun) return begun.error();
-  return ExrWriter(std::move(encoder));
+// Which part of which picture a file holds. Its windows may be any; sides are in [1, kMaxImageSide]
+// once CheckSize has passed them.
+struct Windows {
+  Imath::Box2i data, display;
+
+  static std::int64_t Width(const Imath::Box2i& box) {
+    return std::int64_t{box.max.x} - box.min.x + 1;
+  }
+  static std::int64_t Height(const Imath::Box2i& box) {
+    return std::int64_t{box.max.y} - box.min.y + 1;
+  }
+};
+
+Status CheckSize(const Windows& windows, std::uint64_t bytes, const std::string& path) {
+  const std::int64_t width = Windows::Width(windows.data), height = Windows::Height(windows.data);
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide) {
+    return InputError(
+        path, fmt::format("{}x{} pixels; sides may be 1 to {}", width, height, kMaxImageSide));
+  }
+  constexpr std::int64_t kMostPixelsPerByte = 4096;
+  if (width * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes)) {
+    return InputError(path, "has more pixels than its bytes can hold");
+  }
+  return Done{};
 }
 
-Status ExrWriter::WriteRows(const Film& rows) { return encoder_->WriteRows(rows); }
-Status ExrWriter::Finish() { return encoder_->Finish(); }
+bool IsFull(const Imf::Channel& channel) {
+  return channel.xSampling == 1 && channel.ySampling == 1;
+}
+
+using ColourChannels = std::array<const char*, 3>;  // of red, green and blue; one may be all three
+
+Result<ColourChannels> FindColours(const Imf::ChannelList& channels, const std::string& path) {
+  ColourChannels names = {"R", "G", "B"};
+  if (channels.findChannel("R") == nullptr) names = {"Y", "Y", "Y"};
+  for (const char* name : names) {
+    const Imf::Channel* channel = channels.findChannel(name);
+    if (channel == nullptr) return InputError(path, "has neither R, G and B nor Y");
+    if (!IsFull(*channel)) return InputError(path, "has channels of less than full resolution");
+  }
+  return names;
+}
+
+Layers FindLayers(const Imf::ChannelList& channels) {
+  Layers layers;
+  for (int i = 0; i < kLayerCount; ++i) {
+    const bool is_there =
+        std::all_of(kChannelNames[i], kChannelNames[i] + kLayerChannels[i], [&](const char* name) {
+          const Imf::Channel* channel = channels.findChannel(name);
+          return channel != nullptr && IsFull(*channel);
+        });
+    if (is_there) layers.Add(static_cast<Layer>(i));
+  }
+  return layers;
+}
+
+void ReadPixels(Imf::InputFile& file, const Imath::Box2i& data, const ColourChannels& colours,
+                Film* film) {
+  std::vector<float> grey;
+  Imf::FrameBuffer buffer;
+  const std::int64_t width = Windows::Width(data);
+  const auto insert = [&](const char* name, float* to, std::size_t step) {
+    const std::size_t size = step * sizeof(float);
+    const auto before = static_cast<std::ptrdiff_t>(step) * (data.min.x + data.min.y * width);
+    buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(to - before), size,
+                                   size * static_cast<std::size_t>(width)));
+  };
+  if (colours[0][0] == 'Y') {
+    grey.resize(film->pixel_count());
+    insert("Y", grey.data(), 1);
+  } else {
+    for (std::size_t c = 0; c < 3; ++c) insert(colours[c], film->rgb.data() + c, 3);
+  }
+  for (int i = 0; i < kLayerCount; ++i) {
+    if (!film->has(static_cast<Layer>(i))) continue;
+    const auto components = static_cast<std::size_t>(kLayerChannels[i]);
+    for (std::size_t c = 0; c < components; ++c) {
+      insert(kChannelNames[i][c], film->layers[i].data() + c, components);
+    }
+  }
+  file.setFrameBuffer(buffer);
+  file.readPixels(data.min.y, data.max.y);
+  for (std::size_t i = 0; i < grey.size(); ++i) std::fill_n(&film->rgb[3 * i], 3, grey[i]);
+}
+
+// Leaves the window empty where the whole picture is larger than any of Sheaf's.
+void SetWindow(const Windows& windows, ReadPictureResult* result) {
+  const std::int64_t full_width = Windows::Width(windows.display);
+  const std::int64_t full_height = Windows::Height(windows.display);
+  const bool is_part = full_width <= kMaxImageSide && full_height <= kMaxImageSide &&
+                       full_width >= 1 && full_height >= 1;
+  if (!is_part) return;
+  const int x0 = windows.data.min.x - windows.display.min.x;
+  const int y0 = windows.data.min.y - windows.display.min.y;
+  result->window = PixelRect{x0, y0, x0 + result->film.width, y0 + result->film.height};
+  result->full_width = static_cast<int>(full_width);
+  result->full_height = static_cast<int>(full_height);
+}
+
+}  // namespace
+
+bool IsExrBuiltIn() { return true; }
+
+NewEncoder CreateExrEncoder(const std::string& path, const PictureSpec& spec) {
+  Result<AtomicFile> file = AtomicFile::Create(path);
+  if (!file) return file.error();
+  auto encoder = std::make_unique<ExrEncoder>(std::move(file).value(), path, spec);
+  if (const Status begun = encoder->Begin(); !begun) return begun.error();
+  return std::unique_ptr<PictureEncoder>(std::move(encoder));
+}
 
 Result<ReadPictureResult> ReadExr(const std::string& path) {
   const Result<std::uint64_t> bytes = FileSize(path);
@@ -231,80 +330,23 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
   try {
     Imf::InputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header();
-    const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
-    const std::int64_t width = std::int64_t{data.max.x} - data.min.x + 1;
-    const std::int64_t height = std::int64_t{data.max.y} - data.min.y + 1;
-    const std::int64_t full_width = std::int64_t{display.max.x} - display.min.x + 1;
-    const std::int64_t full_height = std::int64_t{display.max.y} - display.min.y + 1;
-    if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide) {
-      return InputError(
-          path, fmt::format("{}x{} pixels; sides may be 1 to {}", width, height, kMaxImageSide));
-    }
-    constexpr std::int64_t kMostPixelsPerByte = 4096;
-    if (width * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes.value())) {
-      return InputError(path, "has more pixels than its bytes can hold");
-    }
-    const auto is_full = [](const Imf::Channel& channel) {
-      return channel.xSampling == 1 && channel.ySampling == 1;
-    };
-    const char* names[3] = {"R", "G", "B"};
-    if (header.channels().findChannel("R") == nullptr) names[0] = names[1] = names[2] = "Y";
-    for (const char* name : names) {
-      const Imf::Channel* channel = header.channels().findChannel(name);
-      if (channel == nullptr) return InputError(path, "has neither R, G and B nor Y");
-      if (!is_full(*channel)) return InputError(path, "has channels of less than full resolution");
-    }
+    const Windows windows{header.dataWindow(), header.displayWindow()};
+    if (const Status fits = CheckSize(windows, bytes.value(), path); !fits) return fits.error();
+    const Result<ColourChannels> colours = FindColours(header.channels(), path);
+    if (!colours) return colours.error();
     ReadPictureResult result;
-    Layers layers;
-    for (int i = 0; i < kLayerCount; ++i) {
-      const bool is_there = std::all_of(
-          kChannelNames[i], kChannelNames[i] + kLayerChannels[i], [&](const char* name) {
-            const Imf::Channel* channel = header.channels().findChannel(name);
-            return channel != nullptr && is_full(*channel);
-          });
-      if (is_there) layers.Add(static_cast<Layer>(i));
-    }
-    result.film = Film(static_cast<int>(width), static_cast<int>(height), layers);
-    std::vector<float> grey;
-    Imf::FrameBuffer buffer;
-    const auto insert = [&](const char* name, float* to, std::size_t step) {
-      const std::size_t size = step * sizeof(float);
-      const auto before = static_cast<std::ptrdiff_t>(step) * (data.min.x + data.min.y * width);
-      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(to - before), size,
-                                     size * static_cast<std::size_t>(width)));
-    };
-    if (names[0][0] == 'Y') {
-      grey.resize(result.film.pixel_count());
-      insert("Y", grey.data(), 1);
-    } else {
-      for (std::size_t c = 0; c < 3; ++c) insert(names[c], result.film.rgb.data() + c, 3);
-    }
-    for (int i = 0; i < kLayerCount; ++i) {
-      if (!result.film.has(static_cast<Layer>(i))) continue;
-      const auto components = static_cast<std::size_t>(kLayerChannels[i]);
-      for (std::size_t c = 0; c < components; ++c) {
-        insert(kChannelNames[i][c], result.film.layers[i].data() + c, components);
-      }
-    }
-    file.setFrameBuffer(buffer);
-    file.readPixels(data.min.y, data.max.y);
-    for (std::size_t i = 0; i < grey.size(); ++i) {
-      std::fill_n(&result.film.rgb[3 * i], 3, grey[i]);
-    }
-    result.bits = header.channels().findChannel(names[0])->type == Imf::HALF ? 16 : 32;
+    result.film =
+        Film(static_cast<int>(Windows::Width(windows.data)),
+             static_cast<int>(Windows::Height(windows.data)), FindLayers(header.channels()));
+    ReadPixels(file, windows.data, colours.value(), &result.film);
+    const Imf::Channel* first = header.channels().findChannel(colours.value()[0]);
+    result.bits = first->type == Imf::HALF ? 16 : 32;
     for (const char* key : kMetadataKeys) {
       const auto* text =
           header.findTypedAttribute<Imf::StringAttribute>(std::string("sheaf:") + key);
       if (text != nullptr) result.metadata.emplace_back(key, text->value());
     }
-    const bool is_part = full_width <= kMaxImageSide && full_height <= kMaxImageSide &&
-                         full_width >= 1 && full_height >= 1;
-    if (is_part) {
-      const int x0 = data.min.x - display.min.x, y0 = data.min.y - display.min.y;
-      result.window = PixelRect{x0, y0, x0 + result.film.width, y0 + result.film.height};
-      result.full_width = static_cast<int>(full_width);
-      result.full_height = static_cast<int>(full_height);
-    }
+    SetWindow(windows, &result);
     return result;
   } catch (const std::bad_alloc&) {
     throw;
@@ -315,22 +357,14 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
 
 #else
 
-class ExrWriter::Encoder {};
-ExrWriter::ExrWriter(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}
-ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
-ExrWriter::~ExrWriter() = default;
-
 namespace {
 Error Without(const std::string& path) {
   return {ErrorKind::kUsage, fmt::format("{}: Sheaf was built without OpenEXR", path)};
 }
 }  // namespace
 
-Result<ExrWriter> ExrWriter::Create(const std::string& path, const PictureSpec&) {
-  return Without(path);
-}
-Status ExrWriter::WriteRows(const Film&) { return Done{}; }
-Status ExrWriter::Finish() { return Done{}; }
+bool IsExrBuiltIn() { return false; }
+NewEncoder CreateExrEncoder(const std::string& path, const PictureSpec&) { return Without(path); }
 Result<ReadPictureResult> ReadExr(const std::string& path) { return Without(path); }
 
 #endif

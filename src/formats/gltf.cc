@@ -15,6 +15,7 @@
 #include "src/formats/image.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/read_scene.h"
 #include "src/scene/transform.h"
 
 namespace sheaf {
@@ -38,10 +39,10 @@ std::string FirstLine(const std::string& text) {
 }
 
 // The JSON of a .gltf, or that of a .glb: its first chunk, or nothing where there is none.
-std::string_view JsonOf(const std::string& bytes) {
+std::string_view JsonOf(std::string_view bytes) {
   if (!bytes.starts_with("glTF")) return bytes;
   constexpr std::size_t kHeader = 20;  // of the file and of the chunk
-  return bytes.size() > kHeader ? std::string_view(bytes).substr(kHeader) : std::string_view();
+  return bytes.size() > kHeader ? bytes.substr(kHeader) : std::string_view();
 }
 
 // tinygltf follows values down the stack: what nests deeper than this is refused before.
@@ -70,7 +71,7 @@ class GltfReader {
  public:
   GltfReader(const std::string& name, SceneFiles& files) : name_(name), files_(files) {}
 
-  Result<Scene> Read(const std::string& bytes) {
+  Result<Scene> Read(std::string_view bytes) {
     try {
       if (!Parse(bytes) || !CheckExtensions() || !ReadMaterials() || !ReadNodes()) return Failure();
     } catch (const std::bad_alloc&) {
@@ -94,7 +95,7 @@ class GltfReader {
 
   // ---- Parsing ----
 
-  bool Parse(const std::string& bytes) {
+  bool Parse(std::string_view bytes) {
     if (bytes.size() > 0xffffffffu) return Fail("", "larger than 4 GiB");
     if (NestsTooDeep(JsonOf(bytes))) {
       return Fail("", fmt::format("values nest deeper than {}", kMaxNesting));
@@ -742,7 +743,7 @@ class GltfReader {
 
 }  // namespace
 
-Result<Scene> ParseGltf(const std::string& bytes, const std::string& name, SceneFiles& files) {
+Result<Scene> ParseGltf(std::string_view bytes, const std::string& name, SceneFiles& files) {
   Result<Scene> scene = GltfReader(name, files).Read(bytes);
   if (scene && scene.value().objects.empty()) return SceneError(name, "no mesh in its scene");
   return scene;

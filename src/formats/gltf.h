@@ -3,16 +3,18 @@
 #define SHEAF_FORMATS_GLTF_H_
 
 #include <string>
+#include <string_view>
 
 #include "sheaf/error.h"
-#include "src/formats/read_scene.h"
+#include "sheaf/scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 
 // Meshes, materials, cameras and lights of the file's scene, moved by their nodes. tinygltf parses;
 // whatever indexes or counts is checked here. docs/formats.md lists what is read and what materials
 // become. Errors are kScene, `name: /meshes/0/primitives/1: what`.
-Result<Scene> ParseGltf(const std::string& bytes, const std::string& name, SceneFiles& files);
+Result<Scene> ParseGltf(std::string_view bytes, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf
 

@@ -9,7 +9,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/scene.h"
-#include "src/formats/read_scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 

@@ -310,4 +310,8 @@ Result<Scene> ParseNff(std::string_view text, const std::string& name, int cone_
   return NffReader(text, name, cone_sides).Read();
 }
 
+Result<Scene> ParseNffScene(std::string_view text, const std::string& name, SceneFiles& files) {
+  return ParseNff(text, name, files.options().cone_sides);
+}
+
 }  // namespace sheaf

@@ -8,6 +8,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 
@@ -15,6 +16,9 @@ namespace sheaf {
 // (as `cone_sides` smooth quads without caps), spheres, polygons and patches. What docs/formats.md
 // says of materials and lights holds. Errors are kScene, `name:line: what`.
 Result<Scene> ParseNff(std::string_view text, const std::string& name, int cone_sides);
+
+// The same with the sides that the options ask for.
+Result<Scene> ParseNffScene(std::string_view text, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf
 

@@ -16,6 +16,7 @@
 #include "src/formats/image.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/read_scene.h"
 #include "src/formats/suggest_name.h"
 #include "src/formats/text_scanner.h"
 
@@ -184,7 +185,7 @@ Status CheckMtl(std::string_view text, const std::string& path) {
 // A stream over bytes that are there already.
 class ViewBuffer : public std::streambuf {
  public:
-  explicit ViewBuffer(const std::string& text) {
+  explicit ViewBuffer(std::string_view text) {
     char* const begin = const_cast<char*>(text.data());
     setg(begin, begin, begin + text.size());
   }
@@ -415,10 +416,10 @@ void WarnOfMaterials(const std::map<std::string, std::size_t>& used,
 
 }  // namespace
 
-Result<Scene> ParseObj(const std::string& original, const std::string& name, SceneFiles& files) {
-  const bool may_go_on = original.find('\\') != std::string::npos;
+Result<Scene> ParseObj(std::string_view original, const std::string& name, SceneFiles& files) {
+  const bool may_go_on = original.find('\\') != std::string_view::npos;
   const std::string joined = may_go_on ? JoinLines(original) : "";
-  const std::string& text = may_go_on ? joined : original;
+  const std::string_view text = may_go_on ? std::string_view(joined) : original;
   ObjChecker checker(text, name);
   if (const Status sound = checker.Check(); !sound) return sound.error();
   tinyobj::attrib_t attributes;

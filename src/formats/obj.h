@@ -6,14 +6,15 @@
 #include <string_view>
 
 #include "sheaf/error.h"
-#include "src/formats/read_scene.h"
+#include "sheaf/scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 
 // One mesh object a group and material. tinyobjloader reads the text once it is known to be sound:
 // the library takes bad numbers for 0. Errors are kScene, `name:line: what`. A material library
 // that is missing is a warning; docs/formats.md says what materials become.
-Result<Scene> ParseObj(const std::string& text, const std::string& name, SceneFiles& files);
+Result<Scene> ParseObj(std::string_view text, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf
 

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "sheaf/scene.h"
+#include "src/core/atomic_file.h"
 #include "src/formats/read_file.h"
 
 namespace sheaf {
@@ -51,54 +53,69 @@ bool ParseWhole(std::string_view word, T& value) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
+class PfmEncoder : public PictureEncoder {
+ public:
+  PfmEncoder(AtomicFile file, std::size_t header_bytes, int width, int height)
+      : file_(std::move(file)),
+        header_bytes_(header_bytes),
+        row_bytes_(kBytesPerPixel * static_cast<std::size_t>(width)),
+        rows_left_(static_cast<std::size_t>(height)),
+        held_(file_.seekable() ? 0 : row_bytes_ * rows_left_) {}
+
+  Status WriteRows(const Film& rows) override {
+    Status status = Done{};
+    for (int y = 0; y < rows.height && status; ++y) status = WriteRow(rows.pixel(0, y));
+    return status;
+  }
+
+  Status Finish() override {
+    assert(rows_left_ == 0);
+    const Status written = file_.Write(held_.data(), held_.size());
+    return written ? file_.Commit() : written;
+  }
+
+ private:
+  Status WriteRow(const float* rgb) {
+    assert(rows_left_ > 0);
+    const void* bytes = rgb;
+    std::vector<std::uint8_t> swapped;
+    if constexpr (std::endian::native == std::endian::big) {
+      swapped.resize(row_bytes_);
+      std::memcpy(swapped.data(), rgb, row_bytes_);
+      SwapEachFloat(swapped.data(), row_bytes_ / sizeof(float));
+      bytes = swapped.data();
+    }
+    const std::size_t offset = row_bytes_ * --rows_left_;
+    if (file_.seekable()) return file_.WriteAt(header_bytes_ + offset, bytes, row_bytes_);
+    std::memcpy(held_.data() + offset, bytes, row_bytes_);
+    return Done{};
+  }
+
+  AtomicFile file_;
+  std::size_t header_bytes_, row_bytes_;
+  std::size_t rows_left_;
+  std::vector<std::uint8_t> held_;  // empty where the file is seekable
+};
+
 }  // namespace
 
-PfmWriter::PfmWriter(AtomicFile file, std::size_t header_bytes, int width, int height)
-    : file_(std::move(file)),
-      header_bytes_(header_bytes),
-      row_bytes_(kBytesPerPixel * static_cast<std::size_t>(width)),
-      rows_left_(static_cast<std::size_t>(height)),
-      held_(file_.seekable() ? 0 : row_bytes_ * rows_left_) {}
-
-Result<PfmWriter> PfmWriter::Create(const std::string& path, int width, int height) {
+NewEncoder CreatePfmEncoder(const std::string& path, const PictureSpec& spec) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
+  const int width = spec.window.width(), height = spec.window.height();
   const std::string header = fmt::format("PF\n{} {}\n-1.0\n", width, height);
   const Status status = file.value().Write(header.data(), header.size());
   if (!status) return status.error();
-  return PfmWriter(std::move(file).value(), header.size(), width, height);
-}
-
-Status PfmWriter::WriteRow(const float* rgb) {
-  assert(rows_left_ > 0);
-  const void* bytes = rgb;
-  std::vector<std::uint8_t> swapped;
-  if constexpr (std::endian::native == std::endian::big) {
-    swapped.resize(row_bytes_);
-    std::memcpy(swapped.data(), rgb, row_bytes_);
-    SwapEachFloat(swapped.data(), row_bytes_ / sizeof(float));
-    bytes = swapped.data();
-  }
-  const std::size_t offset = row_bytes_ * --rows_left_;
-  if (file_.seekable()) return file_.WriteAt(header_bytes_ + offset, bytes, row_bytes_);
-  std::memcpy(held_.data() + offset, bytes, row_bytes_);
-  return Done{};
-}
-
-Status PfmWriter::Finish() {
-  assert(rows_left_ == 0);
-  const Status written = file_.Write(held_.data(), held_.size());
-  return written ? file_.Commit() : written;
+  return std::unique_ptr<PictureEncoder>(
+      std::make_unique<PfmEncoder>(std::move(file).value(), header.size(), width, height));
 }
 
 Status WritePfm(const Film& film, const std::string& path) {
-  Result<PfmWriter> writer = PfmWriter::Create(path, film.width, film.height);
-  if (!writer) return writer.error();
-  for (int y = 0; y < film.height; ++y) {
-    const Status written = writer.value().WriteRow(film.pixel(0, y));
-    if (!written) return written;
-  }
-  return writer.value().Finish();
+  const NewEncoder encoder =
+      CreatePfmEncoder(path, WholePicture(film.width, film.height, Transfer::kLinear));
+  if (!encoder) return encoder.error();
+  const Status written = encoder.value()->WriteRows(film);
+  return written ? encoder.value()->Finish() : written;
 }
 
 Result<Film> ReadPfm(const std::string& path) {
@@ -140,6 +157,14 @@ Result<Film> ReadPfm(const std::string& path) {
     SwapEachFloat(reinterpret_cast<std::uint8_t*>(film.rgb.data()), film.rgb.size());
   }
   return film;
+}
+
+Result<ReadPictureResult> ReadPfmPicture(const std::string& path) {
+  Result<Film> film = ReadPfm(path);
+  if (!film) return film.error();
+  ReadPictureResult result;
+  result.film = std::move(film).value();
+  return result;
 }
 
 }  // namespace sheaf

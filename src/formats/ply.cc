@@ -10,6 +10,7 @@
 
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/read_scene.h"
 #include "src/formats/text_scanner.h"
 #include "src/formats/triangulate.h"
 #include "src/scene/srgb.h"
@@ -370,6 +371,16 @@ class PlyReader {
 
 Result<Mesh> ParsePly(std::string_view text, const std::string& name) {
   return PlyReader(text, name).Read();
+}
+
+Result<Scene> ParsePlyScene(std::string_view text, const std::string& name, SceneFiles&) {
+  Result<Mesh> mesh = ParsePly(text, name);
+  if (!mesh) return mesh.error();
+  Scene scene;
+  scene.materials.push_back(PlainMaterial());
+  if (!mesh.value().colours.empty()) scene.materials[0].base_colour = Colour(1.0);
+  scene.objects.push_back({"", std::move(mesh).value(), 0});
+  return scene;
 }
 
 }  // namespace sheaf

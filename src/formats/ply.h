@@ -7,6 +7,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 
@@ -16,6 +17,9 @@ namespace sheaf {
 // and properties are skipped. Errors are kScene, `name:line: what` in headers and ascii, `name:
 // vertex 3: what` in binary. Memory stays a small multiple of the text, whatever it claims.
 Result<Mesh> ParsePly(std::string_view text, const std::string& name);
+
+// The same as a scene of one object, grey where the mesh has no colours.
+Result<Scene> ParsePlyScene(std::string_view text, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf
 

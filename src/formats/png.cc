@@ -16,6 +16,7 @@
 #include "sheaf/version.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/printable.h"
+#include "src/formats/quantize.h"
 #include "src/formats/read_file.h"
 
 namespace sheaf {
@@ -107,12 +108,10 @@ class PngReader {
   png_infop info_ = nullptr;
 };
 
-}  // namespace
-
 // Owns libpng's state and the file; libpng keeps pointers into both, so that it never moves.
-class PngWriter::Encoder {
+class PngWriter {
  public:
-  Encoder(AtomicFile file, std::string path, const PictureSpec& spec)
+  PngWriter(AtomicFile file, std::string path, const PictureSpec& spec)
       : path_(std::move(path)),
         file_(std::move(file)),
         spec_(spec),
@@ -120,9 +119,9 @@ class PngWriter::Encoder {
         png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, OnError, OnWarning)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
   }
-  Encoder(const Encoder&) = delete;
-  Encoder& operator=(const Encoder&) = delete;
-  ~Encoder() { png_destroy_write_struct(&png_, &info_); }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
+  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
 
   Status WriteHeader() {
     texts_ = {{"Software", fmt::format("sheaf {}", kVersion)}};
@@ -133,6 +132,7 @@ class PngWriter::Encoder {
     return StatusOf(EncodeHeader());
   }
 
+  // The next row from the top: 3 * width bytes, or pairs of them, the higher first.
   Status WriteRow(const std::uint8_t* rgb) {
     assert(rows_left_ > 0);
     --rows_left_;
@@ -185,10 +185,10 @@ class PngWriter::Encoder {
 
   // A failed write is kept, and later bytes are dropped, rather than thrown through libpng.
   static void WriteToFile(png_structp png, png_bytep data, png_size_t size) {
-    auto* encoder = static_cast<Encoder*>(png_get_io_ptr(png));
-    if (encoder->error_) return;
-    const Status status = encoder->file_.Write(data, size);
-    if (!status) encoder->error_ = status.error();
+    auto* writer = static_cast<PngWriter*>(png_get_io_ptr(png));
+    if (writer->error_) return;
+    const Status status = writer->file_.Write(data, size);
+    if (!status) writer->error_ = status.error();
   }
 
   Status StatusOf(bool encoded) const {
@@ -208,37 +208,40 @@ class PngWriter::Encoder {
   png_infop info_ = nullptr;
 };
 
-PngWriter::PngWriter(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}
-PngWriter::PngWriter(PngWriter&&) noexcept = default;
-PngWriter::~PngWriter() = default;
-
-Result<PngWriter> PngWriter::Create(const std::string& path, const PictureSpec& spec) {
+Result<std::unique_ptr<PngWriter>> OpenPng(const std::string& path, const PictureSpec& spec) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
-  auto encoder = std::make_unique<Encoder>(std::move(file).value(), path, spec);
-  const Status begun = encoder->WriteHeader();
+  auto writer = std::make_unique<PngWriter>(std::move(file).value(), path, spec);
+  const Status begun = writer->WriteHeader();
   if (!begun) return begun.error();
-  return PngWriter(std::move(encoder));
+  return writer;
 }
 
-Status PngWriter::WriteRow(const std::uint8_t* rgb) { return encoder_->WriteRow(rgb); }
+class PngEncoder : public PictureEncoder {
+ public:
+  PngEncoder(std::unique_ptr<PngWriter> writer, const PictureSpec& spec)
+      : writer_(std::move(writer)),
+        transfer_(spec.values == Values::kLight ? spec.transfer : Transfer::kLinear),
+        quantize_(spec.bits == 16 ? &QuantizeRowTo16Bit : &QuantizeRowTo8Bit),
+        row_(3 * static_cast<std::size_t>(spec.window.width()) * (spec.bits == 16 ? 2 : 1)) {}
 
-Status PngWriter::Finish() { return encoder_->Finish(); }
-
-Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
-  Result<PngWriter> writer =
-      PngWriter::Create(path, WholePicture(picture.width, picture.height, transfer));
-  if (!writer) return writer.error();
-  const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
-  for (int y = 0; y < picture.height; ++y) {
-    const Status written =
-        writer.value().WriteRow(picture.rgb.data() + stride * static_cast<std::size_t>(y));
-    if (!written) return written;
+  Status WriteRows(const Film& rows) override {
+    Status status = Done{};
+    for (int y = 0; y < rows.height && status; ++y) {
+      quantize_(rows.pixel(0, y), 3 * static_cast<std::size_t>(rows.width), transfer_, row_.data());
+      status = writer_->WriteRow(row_.data());
+    }
+    return status;
   }
-  return writer.value().Finish();
-}
 
-namespace {
+  Status Finish() override { return writer_->Finish(); }
+
+ private:
+  std::unique_ptr<PngWriter> writer_;
+  Transfer transfer_;
+  void (*quantize_)(const float*, std::size_t, Transfer, std::uint8_t*);
+  std::vector<std::uint8_t> row_;
+};
 
 // The pixels of a file, rows from the top; `reader` then says what they are.
 Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_bits,
@@ -271,6 +274,26 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_b
 }
 
 }  // namespace
+
+NewEncoder CreatePngEncoder(const std::string& path, const PictureSpec& spec) {
+  Result<std::unique_ptr<PngWriter>> writer = OpenPng(path, spec);
+  if (!writer) return writer.error();
+  return std::unique_ptr<PictureEncoder>(
+      std::make_unique<PngEncoder>(std::move(writer).value(), spec));
+}
+
+Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
+  const Result<std::unique_ptr<PngWriter>> writer =
+      OpenPng(path, WholePicture(picture.width, picture.height, transfer));
+  if (!writer) return writer.error();
+  const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
+  for (int y = 0; y < picture.height; ++y) {
+    const Status written =
+        writer.value()->WriteRow(picture.rgb.data() + stride * static_cast<std::size_t>(y));
+    if (!written) return written;
+  }
+  return writer.value()->Finish();
+}
 
 Result<Picture8> ReadPng(const std::string& path) {
   PngReader reader;

@@ -3,13 +3,13 @@
 #define SHEAF_FORMATS_PNG_H_
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "sheaf/error.h"
+#include "sheaf/formats.h"
 #include "sheaf/scene.h"
-#include "src/formats/picture_spec.h"
+#include "src/formats/picture_encoder.h"
 
 namespace sheaf {
 
@@ -19,30 +19,12 @@ struct Picture8 {
   std::vector<std::uint8_t> rgb;  // 3 * width * height, interleaved, rows from the top
 };
 
-// Writes a picture of `spec.bits` of 8 or 16 row by row. `transfer` is recorded in the file and
-// changes no pixel; a linear picture carries no such record, because viewers would brighten it.
-// Without a Finish() the file does not appear, and one that was there stays.
-class PngWriter {
- public:
-  // Sides in [1, kMaxImageSide]. kInputOutput where the path cannot be written.
-  static Result<PngWriter> Create(const std::string& path, const PictureSpec& spec);
-  PngWriter(PngWriter&&) noexcept;
-  ~PngWriter();
+// Writes a picture of 8 or 16 bits a channel row by row. Its transfer is recorded in the file; a
+// linear picture carries no such record, because viewers would brighten it. kInputOutput where the
+// path cannot be written.
+NewEncoder CreatePngEncoder(const std::string& path, const PictureSpec& spec);
 
-  // The next row from the top: 3 * width bytes, or pairs of them, the higher first. After an error
-  // the only call left is the destructor.
-  Status WriteRow(const std::uint8_t* rgb);
-  // Once, after all rows.
-  Status Finish();
-
- private:
-  class Encoder;
-  explicit PngWriter(std::unique_ptr<Encoder> encoder);
-
-  std::unique_ptr<Encoder> encoder_;
-};
-
-// The whole picture through a PngWriter.
+// Writes a whole picture. `transfer` is recorded in the file and changes no pixel.
 Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path);
 
 // Reads any PNG as RGB: grey is spread, palettes looked up, 16 bits rounded to 8, alpha dropped.

@@ -1,44 +1,18 @@
 #include "src/formats/read_scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <new>
+#include <utility>
 
-#include "src/formats/file_ending.h"
-#include "src/formats/gltf.h"
-#include "src/formats/nff.h"
-#include "src/formats/obj.h"
-#include "src/formats/ply.h"
-#include "src/formats/printable.h"
+#include "src/formats/format_table.h"
 #include "src/formats/read_file.h"
 #include "src/formats/scene_json.h"
 
 namespace sheaf {
 namespace {
-
-namespace fs = std::filesystem;
-
-enum class Format { kJson, kNff, kObj, kPly, kGltf };
-
-std::optional<Format> FormatOf(const std::string& path) {
-  const std::string ending = FileEnding(path);
-  if (ending == ".json") return Format::kJson;
-  if (ending == ".nff") return Format::kNff;
-  if (ending == ".obj") return Format::kObj;
-  if (ending == ".ply") return Format::kPly;
-  if (ending == ".gltf" || ending == ".glb") return Format::kGltf;
-  return std::nullopt;
-}
-
-fs::path Canonical(const fs::path& path) {
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? fs::absolute(path, error).lexically_normal() : canonical;
-}
 
 void AddKeyLight(Scene* scene) {
   Light light;
@@ -62,40 +36,14 @@ KeyLight Complete(Scene* scene) {
 
 }  // namespace
 
-SceneFiles::SceneFiles(const std::string& scene, const ReadOptions& options)
-    : options_(options), root_(Canonical(fs::path(scene).parent_path() / ".")), paths_{scene} {}
-
-Result<std::string> SceneFiles::Resolve(const std::string& from, const std::string& reference) {
-  if (reference.empty() || reference.find('\0') != std::string::npos) {
-    return Error{ErrorKind::kScene, "no name of a file"};
-  }
-  const fs::path path = fs::path(from).parent_path() / reference;  // an absolute one stays
-  if (options_.outside == Outside::kRefused) {
-    const fs::path within = Canonical(path).lexically_relative(root_);
-    if (within.empty() || *within.begin() == "..") {
-      return Error{ErrorKind::kScene, "lies outside the scene's folder (see --allow-outside)"};
-    }
-  }
-  paths_.push_back(path.string());
-  return path.string();
+bool IsScenePath(const std::string& path) {
+  const FileFormat* format = FormatOf(path);
+  return format != nullptr && format->content != FileContent::kPicture;
 }
 
-bool SceneFiles::Enter(const std::string& path) {
-  const fs::path canonical = Canonical(path);
-  if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) return false;
-  open_.push_back(canonical);
-  return true;
-}
-
-void SceneFiles::Warn(std::string line) {
-  if (std::find(warnings_.begin(), warnings_.end(), line) == warnings_.end()) {
-    warnings_.push_back(std::move(line));
-  }
-}
-
-bool IsScenePath(const std::string& path) { return FormatOf(path).has_value(); }
 bool IsModelPath(const std::string& path) {
-  return IsScenePath(path) && FormatOf(path) != Format::kJson;
+  const FileFormat* format = FormatOf(path);
+  return format != nullptr && format->content == FileContent::kModel;
 }
 
 Material PlainMaterial() {
@@ -107,42 +55,24 @@ Material PlainMaterial() {
   return material;
 }
 
-Result<Scene> ReadModel(const std::string& path, SceneFiles& files) {
-  Result<std::string> text = ReadWholeFile(path);
+Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files) {
+  const FormatRow* row = FindFormat(path);
+  if (row == nullptr || row->parse == nullptr) return ReadSceneJson(path, files);
+  const Result<std::string> text = ReadWholeFile(path, row->max_bytes);
   if (!text) return text.error();
-  switch (FormatOf(path).value_or(Format::kJson)) {
-    case Format::kNff:
-      return ParseNff(text.value(), path, files.options().cone_sides);
-    case Format::kObj:
-      return ParseObj(text.value(), path, files);
-    case Format::kGltf:
-      return ParseGltf(text.value(), path, files);
-    case Format::kPly: {
-      Result<Mesh> mesh = ParsePly(text.value(), path);
-      if (!mesh) return mesh.error();
-      Scene scene;
-      scene.materials.push_back(PlainMaterial());
-      if (!mesh.value().colours.empty()) scene.materials[0].base_colour = Colour(1.0);
-      scene.objects.push_back({"", std::move(mesh).value(), 0});
-      return scene;
-    }
-    case Format::kJson:
-      break;
-  }
-  return SceneError(path, "unknown format; the name must end in .nff, .obj, .ply, .gltf or .glb");
+  return row->parse(text.value(), path, files);
 }
 
 Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options) {
   try {
     SceneFiles files(path, options);
     files.Enter(path);
-    Result<Scene> scene = IsModelPath(path) ? ReadModel(path, files) : ReadSceneJson(path, files);
+    Result<Scene> scene = ReadSceneFile(path, files);
     if (!scene) return scene.error();
     KeyLight key_light = KeyLight::kAbsent;
     if (IsModelPath(path)) {
       key_light = Complete(&scene.value());
-      // Models of today are made for displays; Haines' are older than that.
-      if (FormatOf(path) != Format::kNff) scene.value().settings.transfer = Transfer::kSrgb;
+      scene.value().settings.transfer = FindFormat(path)->model_transfer;
     }
     return ReadSceneResult{std::move(scene).value(), key_light, files.warnings(), files.paths()};
   } catch (const std::bad_alloc&) {

@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "src/formats/format_table.h"
 #include "src/formats/image.h"
 #include "src/formats/json_cursor.h"
 #include "src/formats/json_tree.h"
@@ -207,11 +208,10 @@ Result<Scene> ReadReferenced(const std::string& reference, Reading* reading) {
   if (!path)
     return Error{ErrorKind::kScene,
                  fmt::format("{}: {}", Printable(reference), path.error().message)};
-  if (IsModelPath(path.value())) return ReadModel(path.value(), reading->files);
+  if (IsModelPath(path.value())) return ReadSceneFile(path.value(), reading->files);
   if (!IsScenePath(path.value())) {
     return Error{ErrorKind::kScene,
-                 fmt::format("{}: the name must end in .json, .nff, .obj, .ply, .gltf or .glb",
-                             Printable(reference))};
+                 fmt::format("{}: the name must end in {}", Printable(reference), SceneEndings())};
   }
   if (!reading->files.Enter(path.value())) {
     return Error{ErrorKind::kScene,

@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "sheaf/error.h"
+#include "sheaf/formats.h"
 #include "sheaf/scene.h"
+#include "src/formats/scene_files.h"
 
 namespace sheaf {
 
@@ -15,12 +17,8 @@ namespace sheaf {
 Result<Scene> ReadSceneJson(const std::string& path);
 
 // The same within another scene, whose files and warnings these are.
-class SceneFiles;
 Result<Scene> ReadSceneJson(const std::string& path, SceneFiles& files);
 Result<Scene> ParseSceneJson(std::string_view text, const std::string& name, SceneFiles& files);
-
-// The same from memory; `name` stands for the file in messages.
-Result<Scene> ParseSceneJson(std::string_view text, const std::string& name);
 
 }  // namespace sheaf
 

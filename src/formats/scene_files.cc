@@ -1,0 +1,50 @@
+#include "src/formats/scene_files.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sheaf {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path Canonical(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path, error).lexically_normal() : canonical;
+}
+
+}  // namespace
+
+SceneFiles::SceneFiles(const std::string& scene, const ReadOptions& options)
+    : options_(options), root_(Canonical(fs::path(scene).parent_path() / ".")), paths_{scene} {}
+
+Result<std::string> SceneFiles::Resolve(const std::string& from, const std::string& reference) {
+  if (reference.empty() || reference.find('\0') != std::string::npos) {
+    return Error{ErrorKind::kScene, "no name of a file"};
+  }
+  const fs::path path = fs::path(from).parent_path() / reference;  // an absolute one stays
+  if (options_.outside == Outside::kRefused) {
+    const fs::path within = Canonical(path).lexically_relative(root_);
+    if (within.empty() || *within.begin() == "..") {
+      return Error{ErrorKind::kScene, "lies outside the scene's folder (see --allow-outside)"};
+    }
+  }
+  paths_.push_back(path.string());
+  return path.string();
+}
+
+bool SceneFiles::Enter(const std::string& path) {
+  const fs::path canonical = Canonical(path);
+  if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) return false;
+  open_.push_back(canonical);
+  return true;
+}
+
+void SceneFiles::Warn(std::string line) {
+  if (std::find(warnings_.begin(), warnings_.end(), line) == warnings_.end()) {
+    warnings_.push_back(std::move(line));
+  }
+}
+
+}  // namespace sheaf

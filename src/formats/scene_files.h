@@ -1,0 +1,47 @@
+// The files of one scene while it is read.
+#ifndef SHEAF_FORMATS_SCENE_FILES_H_
+#define SHEAF_FORMATS_SCENE_FILES_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/formats.h"
+
+namespace sheaf {
+
+// What readers share while one scene is read: which files they may open, which are open, and what
+// they have to say.
+class SceneFiles {
+ public:
+  SceneFiles(const std::string& scene, const ReadOptions& options);
+
+  const ReadOptions& options() const { return options_; }
+
+  // The path of `reference`, as the file `from` names it: relative to its folder. An error, without
+  // a place, where it leaves the scene's folder and may not.
+  Result<std::string> Resolve(const std::string& from, const std::string& reference);
+
+  // Includes: false where `path` is being read already.
+  bool Enter(const std::string& path);
+  void Leave() { open_.pop_back(); }
+
+  // A line about what is left out or replaced. The same line counts once.
+  void Warn(std::string line);
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  // The scene itself and whatever was resolved.
+  const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+  ReadOptions options_;
+  std::filesystem::path root_;
+  std::vector<std::filesystem::path> open_;
+  std::vector<std::string> warnings_;
+  std::vector<std::string> paths_;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_SCENE_FILES_H_
