@@ -1,0 +1,40 @@
+// The scene graph of a glTF file, with the cameras and lights that hang in it.
+#ifndef SHEAF_FORMATS_GLTF_NODES_H_
+#define SHEAF_FORMATS_GLTF_NODES_H_
+
+#include <string>
+#include <vector>
+
+#include "sheaf/scene.h"
+#include "src/formats/gltf_document.h"
+#include "src/formats/gltf_meshes.h"
+#include "src/scene/transform.h"
+
+namespace sheaf {
+
+class GltfNodes {
+ public:
+  GltfNodes(GltfDocument& document, GltfMeshes& meshes, Scene& scene)
+      : document_(document), meshes_(meshes), scene_(scene) {}
+
+  // Everything below the nodes of the file's scene. False with a fault in the document.
+  bool Read();
+
+ private:
+  bool FindRoots(std::vector<int>* roots);
+  bool Visit(int index, const Transform& parent, int depth);
+  bool AddCamera(const tinygltf::Node& node, const std::string& place, const Transform& transform);
+  bool AddLight(const tinygltf::Node& node, const std::string& place, const Transform& transform);
+  bool ReadSource(const tinygltf::Light& from, const std::string& place, const Vec3d& position,
+                  const Vec3d& direction, Light* light);
+  std::string FreeName(const std::string& wanted) const;
+
+  GltfDocument& document_;
+  GltfMeshes& meshes_;
+  Scene& scene_;
+  std::vector<bool> visited_;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_GLTF_NODES_H_
