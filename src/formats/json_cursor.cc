@@ -11,7 +11,7 @@
 namespace sheaf {
 namespace {
 
-std::string List(std::initializer_list<std::string_view> keys) {
+std::string List(std::span<const std::string_view> keys) {
   std::string list;
   for (std::string_view key : keys) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", key);
   return list;
@@ -136,7 +136,7 @@ JsonCursor JsonObject::Required(std::string_view key) {
   return member;
 }
 
-JsonCursor JsonObject::AtMostOneOf(std::initializer_list<std::string_view> keys) {
+JsonCursor JsonObject::AtMostOneOf(std::span<const std::string_view> keys) {
   JsonCursor chosen;
   for (std::string_view key : keys) {
     const JsonCursor member = Optional(key);
@@ -156,7 +156,7 @@ JsonCursor JsonObject::AtMostOneOf(std::initializer_list<std::string_view> keys)
   return chosen;
 }
 
-JsonCursor JsonObject::OneOf(std::initializer_list<std::string_view> keys) {
+JsonCursor JsonObject::OneOf(std::span<const std::string_view> keys) {
   const JsonCursor member = AtMostOneOf(keys);
   if (!member.present()) FailMissing("", "missing key; give one of " + List(keys));
   return member;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -133,8 +134,14 @@ class JsonObject {
 
   // The one of these keys that is present; several are an error, and none is one for OneOf. Where
   // several are present the first of `keys` is returned.
-  JsonCursor AtMostOneOf(std::initializer_list<std::string_view> keys);
-  JsonCursor OneOf(std::initializer_list<std::string_view> keys);
+  JsonCursor AtMostOneOf(std::span<const std::string_view> keys);
+  JsonCursor OneOf(std::span<const std::string_view> keys);
+  JsonCursor AtMostOneOf(std::initializer_list<std::string_view> keys) {
+    return AtMostOneOf(std::span(keys.begin(), keys.size()));
+  }
+  JsonCursor OneOf(std::initializer_list<std::string_view> keys) {
+    return OneOf(std::span(keys.begin(), keys.size()));
+  }
 
   void FailMissing(std::string_view key, std::string_view what) const;
 
@@ -146,6 +153,29 @@ class JsonObject {
   JsonCursor value_;  // absent unless an object
   std::vector<std::string_view> known_;
 };
+
+// One of the things that an object may hold, by the key under which it stands.
+template <typename Thing>
+struct KeyedReader {
+  std::string_view key;
+  Thing (*read)(const JsonCursor& value);
+};
+
+template <typename Thing, std::size_t count>
+std::array<std::string_view, count> KeysOf(const KeyedReader<Thing> (&readers)[count]) {
+  std::array<std::string_view, count> keys;
+  for (std::size_t i = 0; i < count; ++i) keys[i] = readers[i].key;
+  return keys;
+}
+
+// `value` stands under one of the keys.
+template <typename Thing, std::size_t count>
+Thing ReadByKey(const JsonCursor& value, const KeyedReader<Thing> (&readers)[count]) {
+  for (const KeyedReader<Thing>& reader : readers) {
+    if (reader.key == value.key()) return reader.read(value);
+  }
+  return {};
+}
 
 }  // namespace sheaf
 

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string_view>
+#include <variant>
 
-#include "src/formats/scene_values.h"
+#include "src/core/match.h"
 #include "src/formats/suggest_name.h"
 
 namespace sheaf {
 namespace {
+
+using Source = decltype(Light::source);
 
 // Times a colour and an exposure, both up to 1e6, this still fits a float.
 constexpr NumberRange kIntensity{0.0, 1e24, "a number in [0, 1e24]"};
@@ -53,7 +57,7 @@ void ReadFalloff(const JsonCursor& value, Falloff* out) {
   *out = falloff;
 }
 
-PointLight ReadPointLight(const JsonCursor& value) {
+Source ReadPointLight(const JsonCursor& value) {
   PointLight light;
   JsonObject object(value);
   ReadVector(object.Required("position"), &light.position);
@@ -64,7 +68,7 @@ PointLight ReadPointLight(const JsonCursor& value) {
 
 constexpr NumberRange kConeAngle{0.0, 90.0, "a number in [0, 90]"};
 
-PointLight ReadSpotLight(const JsonCursor& value) {
+Source ReadSpotLight(const JsonCursor& value) {
   PointLight light;
   Cone cone;
   JsonObject object(value);
@@ -82,12 +86,26 @@ PointLight ReadSpotLight(const JsonCursor& value) {
   return light;
 }
 
-DirectionalLight ReadDirectionalLight(const JsonCursor& value) {
+Source ReadDirectionalLight(const JsonCursor& value) {
   DirectionalLight light;
   JsonObject object(value);
   ReadDirection(object.Required("direction"), &light.direction);
   object.Finish();
   return light;
+}
+
+constexpr KeyedReader<Source> kSources[] = {
+    {"point", &ReadPointLight}, {"spot", &ReadSpotLight}, {"directional", &ReadDirectionalLight}};
+
+Json PointJson(const PointLight& point) {
+  const Falloff& falloff = point.falloff;
+  Json json = {{"position", VectorJson(point.position)},
+               {"falloff", {falloff.constant, falloff.linear, falloff.quadratic}}};
+  if (!point.cone) return {{"point", json}};
+  json["direction"] = VectorJson(point.cone->direction);
+  json["inner"] = point.cone->inner;
+  json["outer"] = point.cone->outer;
+  return {{"spot", json}};
 }
 
 // What the illuminance at the reference point has to be multiplied with to give the intensity.
@@ -102,16 +120,8 @@ double FalloffAt(const PointLight& light, const Vec3d& reference) {
 
 Light ReadLight(JsonObject* object) {
   Light light;
-  const JsonCursor source = object->OneOf({"point", "spot", "directional"});
-  const bool is_spot = source.present() && source.key() == "spot";
-  const bool is_point = is_spot || (source.present() && source.key() == "point");
-  if (is_spot) {
-    light.source = ReadSpotLight(source);
-  } else if (is_point) {
-    light.source = ReadPointLight(source);
-  } else {
-    light.source = ReadDirectionalLight(source);
-  }
+  const JsonCursor source = object->OneOf(KeysOf(kSources));
+  if (source.present()) light.source = ReadByKey(source, kSources);
   ReadColour(object->Optional("colour"), kStrength, &light.colour);
   object->Optional("shadows").ReadBoolean(&light.casts_shadows);
 
@@ -119,14 +129,15 @@ Light ReadLight(JsonObject* object) {
   const bool is_read = strength.Read(kIntensity, &light.intensity);
   const JsonCursor reference = object->Optional("reference");
   if (!source.present() || !strength.present()) return light;
-  if (!is_point || strength.key() != "E0") {
+  const auto* point = std::get_if<PointLight>(&light.source);
+  if (point == nullptr || strength.key() != "E0") {
     reference.Fail("only \"E0\" of a point light has a reference point");
     return light;
   }
   if (!reference.present()) object->FailMissing("reference", "missing key; \"E0\" needs it");
-  Vec3d point{0.0};
-  if (!ReadVector(reference, &point) || !is_read) return light;
-  const double factor = FalloffAt(std::get<PointLight>(light.source), point);
+  Vec3d place{0.0};
+  if (!ReadVector(reference, &place) || !is_read) return light;
+  const double factor = FalloffAt(*point, place);
   light.intensity *= factor;
   if (!(factor > 0.0)) {
     reference.Fail("the reference point is the light's position, where E0 is not defined");
@@ -135,6 +146,20 @@ Light ReadLight(JsonObject* object) {
                               kIntensity.high));
   }
   return light;
+}
+
+Json LightJson(const Light& light) {
+  Json json = Json::object();
+  if (!light.name.empty()) json["name"] = light.name;
+  json.update(Match(
+      light.source, [](const PointLight& point) { return PointJson(point); },
+      [](const DirectionalLight& sun) -> Json {
+        return {{"directional", {{"direction", VectorJson(sun.direction)}}}};
+      }));
+  json["colour"] = VectorJson(light.colour);
+  json["intensity"] = light.intensity;
+  json["shadows"] = light.casts_shadows;
+  return json;
 }
 
 }  // namespace sheaf

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "src/formats/scene_values.h"
+#include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace sheaf {
 namespace {
@@ -21,6 +22,21 @@ void ReadVectors(const JsonCursor& list, const NumberRange& range, std::string_v
     }
     out->push_back(vector);
   });
+}
+
+template <typename Vector>
+Json VectorsJson(const std::vector<Vector>& vectors) {
+  Json json = Json::array();
+  for (const Vector& vector : vectors) {
+    Json numbers = Json::array();
+    // 1e30 as a float lies above 1e30, and is what the reader makes of 1e30 again.
+    for (int i = 0; i < Vector::length(); ++i) {
+      numbers.push_back(
+          std::clamp(static_cast<double>(vector[i]), -kMaxCoordinate, kMaxCoordinate));
+    }
+    json.push_back(std::move(numbers));
+  }
+  return json;
 }
 
 }  // namespace
@@ -56,6 +72,15 @@ Mesh ReadMesh(const JsonCursor& value) {
   });
   object.Finish();
   return mesh;
+}
+
+Json MeshJson(const Mesh& mesh) {
+  Json json = {{"positions", VectorsJson(mesh.positions)}};
+  if (!mesh.normals.empty()) json["normals"] = VectorsJson(mesh.normals);
+  if (!mesh.uv.empty()) json["uv"] = VectorsJson(mesh.uv);
+  if (!mesh.colours.empty()) json["colours"] = VectorsJson(mesh.colours);
+  json["triangles"] = mesh.triangles;
+  return json;
 }
 
 }  // namespace sheaf

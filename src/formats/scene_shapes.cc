@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+#include <variant>
 
+#include "src/core/match.h"
+#include "src/formats/scene_mesh.h"
 #include "src/formats/scene_values.h"
 
 namespace sheaf {
@@ -50,9 +54,13 @@ bool ReadPoints(const JsonCursor& value, std::string_view expected,
   return is_right;
 }
 
-}  // namespace
+Json PointsJson(const auto& points) {
+  Json json = Json::array();
+  for (const Vec3d& point : points) json.push_back(VectorJson(point));
+  return json;
+}
 
-Sphere ReadSphere(const JsonCursor& value) {
+Shape ReadSphere(const JsonCursor& value) {
   Sphere sphere;
   JsonObject object(value);
   ReadVector(object.Required("center"), &sphere.center);
@@ -61,7 +69,8 @@ Sphere ReadSphere(const JsonCursor& value) {
   return sphere;
 }
 
-Quad ReadQuad(const JsonCursor& value) {
+// A quad that is degenerate, bent (by more than 1e-6 of its size) or not convex is an error.
+Shape ReadQuad(const JsonCursor& value) {
   Quad quad{};
   JsonObject object(value);
   const JsonCursor corners = object.Required("corners");
@@ -73,7 +82,8 @@ Quad ReadQuad(const JsonCursor& value) {
   return quad;
 }
 
-Triangle ReadTriangle(const JsonCursor& value) {
+// A triangle without area is valid: it is never hit.
+Shape ReadTriangle(const JsonCursor& value) {
   Triangle triangle{};
   JsonObject object(value);
   ReadPoints(object.Required("vertices"), "3 points [x, y, z]", &triangle.vertices);
@@ -84,6 +94,48 @@ Triangle ReadTriangle(const JsonCursor& value) {
   }
   object.Finish();
   return triangle;
+}
+
+Json TriangleJson(const Triangle& triangle) {
+  Json json = {{"vertices", PointsJson(triangle.vertices)}};
+  if (triangle.uv == Triangle{}.uv) return json;
+  Json uv = Json::array();
+  for (const glm::dvec2& p : triangle.uv) uv.push_back(Json{p.x, p.y});
+  json["uv"] = uv;
+  return json;
+}
+
+// A mesh's file is the reader's business whose scene this is.
+constexpr KeyedReader<Shape> kShapes[] = {
+    {"sphere", &ReadSphere},
+    {"quad", &ReadQuad},
+    {"triangle", &ReadTriangle},
+    {"mesh", [](const JsonCursor& value) -> Shape { return ReadMesh(value); }}};
+
+}  // namespace
+
+std::vector<std::string_view> ShapeKeys() {
+  const auto keys = KeysOf(kShapes);
+  return {keys.begin(), keys.end()};
+}
+
+Shape ReadShape(const JsonCursor& value) { return ReadByKey(value, kShapes); }
+
+Json ShapeJson(const Shape& shape) {
+  return Match(
+      shape,
+      [](const Sphere& sphere) -> Json {
+        return {{"sphere", {{"center", VectorJson(sphere.center)}, {"radius", sphere.radius}}}};
+      },
+      [](const Quad& quad) -> Json {
+        return {{"quad", {{"corners", PointsJson(quad.corners)}}}};
+      },
+      [](const Triangle& triangle) -> Json {
+        return {{"triangle", TriangleJson(triangle)}};
+      },
+      [](const Mesh& mesh) -> Json {
+        return {{"mesh", MeshJson(mesh)}};
+      });
 }
 
 }  // namespace sheaf

@@ -1,19 +1,26 @@
-// Reads the geometry of an object from a scene file.
+// The shapes of scene JSON, read and written.
 #ifndef SHEAF_FORMATS_SCENE_SHAPES_H_
 #define SHEAF_FORMATS_SCENE_SHAPES_H_
 
+#include <string_view>
+#include <vector>
+
 #include "sheaf/scene.h"
 #include "src/formats/json_cursor.h"
+#include "src/formats/scene_values.h"
 
 namespace sheaf {
 
-Sphere ReadSphere(const JsonCursor& value);
+using Shape = decltype(Object::shape);
 
-// A quad that is degenerate, bent (by more than 1e-6 of its size) or not convex is an error.
-Quad ReadQuad(const JsonCursor& value);
+// The keys of an object under which a shape may stand.
+std::vector<std::string_view> ShapeKeys();
 
-// A triangle without area is valid: it is never hit.
-Triangle ReadTriangle(const JsonCursor& value);
+// The shape that stands under such a key.
+Shape ReadShape(const JsonCursor& value);
+
+// An object of that one key.
+Json ShapeJson(const Shape& shape);
 
 }  // namespace sheaf
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <nlohmann/json.hpp>
 
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
@@ -73,6 +74,8 @@ bool ReadDirection(const JsonCursor& value, Vec3d* out) {
   *out = direction;
   return true;
 }
+
+Json VectorJson(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 Vec3d Normalized(const Vec3d& vector) {
   const Vec3d v = vector / LargestComponent(vector);  // so that no square over- or underflows

@@ -1,8 +1,9 @@
-// The small values that all parts of a scene file share: vectors, colours, names.
+// The small values that all parts of scene JSON share, read and written: vectors, colours, names.
 #ifndef SHEAF_FORMATS_SCENE_VALUES_H_
 #define SHEAF_FORMATS_SCENE_VALUES_H_
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +37,9 @@ bool ReadPictureColour(const JsonCursor& value, Transfer transfer, Colour* out,
 
 // A vector that gives a direction: its largest component is at least 1e-30 in size.
 bool ReadDirection(const JsonCursor& value, Vec3d* out);
+
+using Json = nlohmann::ordered_json;
+Json VectorJson(const Vec3d& v);
 
 // Unit length, for any vector with a component of at least 1e-30 in size.
 Vec3d Normalized(const Vec3d& vector);

@@ -1,0 +1,197 @@
+#include "src/formats/scene_materials.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "src/core/match.h"
+#include "src/formats/suggest_name.h"
+
+namespace sheaf {
+namespace {
+
+constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
+constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
+constexpr NumberRange kCells{kSmallestPositive, 65536.0, "a number in (0, 65536]"};
+
+enum class Written { kAlways, kUnlessDefault };
+
+// A material's parameters but its base colour, in the order of the file: the only list of them.
+struct Parameter {
+  std::string_view key;
+  std::variant<double Material::*, Colour Material::*> member;
+  NumberRange range;
+  Written written = Written::kAlways;
+};
+constexpr Parameter kParameters[] = {
+    {"emission", &Material::emission, kStrength, Written::kUnlessDefault},
+    {"ambient", &Material::ambient, kStrength},
+    {"kd", &Material::kd, kStrength},
+    {"ks", &Material::ks, kStrength},
+    {"shininess", &Material::shininess, kShininess},
+    {"reflect", &Material::reflect, kFraction},
+    {"transmit", &Material::transmit, kFraction},
+    {"ior", &Material::ior, kIor},
+};
+
+void ReadParameter(const JsonCursor& value, const Parameter& parameter, Material* material) {
+  Match(
+      parameter.member,
+      [&](double Material::*member) { value.Read(parameter.range, &(material->*member)); },
+      [&](Colour Material::*member) { ReadColour(value, parameter.range, &(material->*member)); });
+}
+
+void WriteParameter(const Material& material, const Parameter& parameter, Json* json) {
+  const auto write = [&](auto member, const auto& to_json) {
+    if (parameter.written == Written::kUnlessDefault && material.*member == Material().*member) {
+      return;
+    }
+    (*json)[std::string(parameter.key)] = to_json(material.*member);
+  };
+  Match(
+      parameter.member,
+      [&](double Material::*member) { write(member, [](double number) { return Json(number); }); },
+      [&](Colour Material::*member) { write(member, &VectorJson); });
+}
+
+Checker ReadChecker(const JsonCursor& value, Transfer transfer) {
+  Checker checker;
+  JsonObject object(value);
+  ReadPictureColour(object.Optional("even"), transfer, &checker.even);
+  ReadPictureColour(object.Optional("odd"), transfer, &checker.odd);
+  ReadPair(object.Optional("cells"), kCells, "[cells along u, cells along v]", &checker.cells);
+  object.Finish();
+  return checker;
+}
+
+template <typename Choice, std::size_t count>
+void ReadChoice(const JsonCursor& value,
+                const std::pair<std::string_view, Choice> (&choices)[count], Choice* out) {
+  std::string word;
+  if (!value.ReadString(&word)) return;
+  std::vector<std::string_view> known;
+  for (const auto& [name, choice] : choices) {
+    known.push_back(name);
+    if (name != word) continue;
+    *out = choice;
+    return;
+  }
+  value.Fail(fmt::format("expected one of {}{}", fmt::join(known, ", "), DidYouMean(word, known)));
+}
+
+template <typename Choice, std::size_t count>
+std::string_view NameOf(Choice value, const std::pair<std::string_view, Choice> (&choices)[count]) {
+  for (const auto& [name, choice] : choices) {
+    if (choice == value) return name;
+  }
+  return "";
+}
+
+constexpr std::pair<std::string_view, Wrap> kWraps[] = {
+    {"repeat", Wrap::kRepeat}, {"mirror", Wrap::kMirror}, {"clamp", Wrap::kClamp}};
+constexpr std::pair<std::string_view, Filter> kFilters[] = {{"linear", Filter::kLinear},
+                                                            {"nearest", Filter::kNearest}};
+
+// Nothing where the image cannot be had, which is an error.
+std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source) {
+  Texture texture;
+  JsonObject object(value);
+  const JsonCursor image = object.Required("image");
+  std::string reference;
+  if (image.ReadString(&reference)) {
+    auto loaded = source->images.Load(source->path, reference, source->files);
+    if (loaded) {
+      texture.image = loaded.value();
+    } else {
+      image.Fail(loaded.error().message);
+    }
+  }
+  const JsonCursor wrap = object.Optional("wrap");
+  if (wrap.Is(JsonKind::kArray)) {
+    if (const auto both = wrap.ReadTuple<2>("[along u, along v]")) {
+      ReadChoice((*both)[0], kWraps, &texture.wrap_u);
+      ReadChoice((*both)[1], kWraps, &texture.wrap_v);
+    }
+  } else {
+    ReadChoice(wrap, kWraps, &texture.wrap_u);
+    texture.wrap_v = texture.wrap_u;
+  }
+  ReadChoice(object.Optional("filter"), kFilters, &texture.filter);
+  bool is_srgb = true;
+  object.Optional("srgb").ReadBoolean(&is_srgb);
+  texture.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
+  ReadPictureColour(object.Optional("factor"), source->decode, &texture.factor);
+  object.Finish();
+  return texture.image ? std::optional(texture) : std::nullopt;
+}
+
+void ReadBaseColour(const JsonCursor& value, ColourSource* source, Material* material) {
+  const Transfer transfer = source->decode;
+  if (value.Is(JsonKind::kObject)) {
+    JsonObject object(value);
+    const JsonCursor texture = object.Optional("texture");
+    const JsonCursor checker =
+        texture.present() ? object.AtMostOneOf({"checker"}) : object.Required("checker");
+    if (texture.present() && checker.present()) {
+      checker.Fail("a base colour is a checker or a texture, not both");
+    } else if (checker.present()) {
+      material->base_colour = ReadChecker(checker, transfer);
+    } else if (texture.present()) {
+      if (const auto read = ReadTexture(texture, source)) material->base_colour = *read;
+    }
+    object.Finish();
+    return;
+  }
+  Colour colour;
+  if (ReadPictureColour(value, transfer, &colour,
+                        "a colour ([r, g, b] or one number) or {\"checker\": ...}")) {
+    material->base_colour = colour;
+  }
+}
+
+Json BaseColourJson(const Material& material) {
+  return Match(
+      material.base_colour, [](const Colour& colour) { return VectorJson(colour); },
+      [](const Checker& checker) -> Json {
+        return {{"checker",
+                 {{"even", VectorJson(checker.even)},
+                  {"odd", VectorJson(checker.odd)},
+                  {"cells", {checker.cells.x, checker.cells.y}}}}};
+      },
+      [](const Texture& texture) -> Json {
+        return {{"texture",
+                 {{"image", texture.image->name},
+                  {"wrap", {NameOf(texture.wrap_u, kWraps), NameOf(texture.wrap_v, kWraps)}},
+                  {"filter", NameOf(texture.filter, kFilters)},
+                  {"srgb", texture.transfer == Transfer::kSrgb},
+                  {"factor", VectorJson(texture.factor)}}}};
+      });
+}
+
+}  // namespace
+
+Material ReadMaterial(const JsonCursor& value, ColourSource* source, NameTable* names) {
+  Material material;
+  JsonObject object(value);
+  const JsonCursor name = object.Required("name");
+  if (ReadNonEmptyName(name, &material.name)) names->Add(material.name, name);
+  ReadBaseColour(object.Optional("base_colour"), source, &material);
+  for (const Parameter& parameter : kParameters) {
+    ReadParameter(object.Optional(parameter.key), parameter, &material);
+  }
+  object.Finish();
+  return material;
+}
+
+Json MaterialJson(const Material& material) {
+  Json json = {{"name", material.name}};
+  json["base_colour"] = BaseColourJson(material);
+  for (const Parameter& parameter : kParameters) WriteParameter(material, parameter, &json);
+  return json;
+}
+
+}  // namespace sheaf
