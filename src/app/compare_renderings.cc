@@ -10,8 +10,8 @@
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/formats/printable.h"
+#include "src/lab/object_at.h"
 #include "src/lab/picture_metrics.h"
-#include "src/render/object_at.h"
 
 namespace sheaf {
 namespace {

@@ -23,15 +23,9 @@ struct StressRequest {
   std::optional<stress::Ray> replay;
 };
 
-std::vector<stress::Case> AllCases() {
-  std::vector<stress::Case> cases(stress::RayCases().begin(), stress::RayCases().end());
-  cases.insert(cases.end(), stress::PictureCases().begin(), stress::PictureCases().end());
-  return cases;
-}
-
 Result<std::vector<stress::Case>> ChooseCases(const std::vector<std::string>& names) {
-  const std::vector<stress::Case> all = AllCases();
-  if (names.empty()) return all;
+  const std::span<const stress::Case> all = stress::Cases();
+  if (names.empty()) return std::vector<stress::Case>(all.begin(), all.end());
   std::vector<stress::Case> chosen;
   for (const std::string& name : names) {
     const auto found =
@@ -51,9 +45,9 @@ Result<std::vector<stress::Case>> ChooseCases(const std::vector<std::string>& na
 Status CheckReplay(const StressRequest& request) {
   if (!request.replay) return Done{};
   if (request.cases.size() != 1) return Usage("--replay: it takes the one case that is named");
-  const std::span<const stress::Case> pictures = stress::PictureCases();
-  const bool renders = std::any_of(pictures.begin(), pictures.end(), [&](const stress::Case& c) {
-    return request.cases.front() == c.name;
+  const std::span<const stress::Case> all = stress::Cases();
+  const bool renders = std::any_of(all.begin(), all.end(), [&](const stress::Case& c) {
+    return request.cases.front() == c.name && c.subject == stress::Subject::kPictures;
   });
   if (!renders) return Done{};
   return Usage(fmt::format("--replay: the case \"{}\" renders pictures and traces no single rays",

@@ -11,13 +11,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// One channel of a picture.
 struct Plane {
   int width, height;
   std::vector<double> values;
 
   Plane(int w, int h)
       : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
-  // Beyond the border the border goes on.
+  // A pixel outside the picture has the value of the nearest pixel inside.
   double at(int x, int y) const {
     const int cx = std::clamp(x, 0, width - 1), cy = std::clamp(y, 0, height - 1);
     return values[static_cast<std::size_t>(cy) * static_cast<std::size_t>(width) +
@@ -28,8 +29,9 @@ struct Plane {
 using Triple = std::array<double, 3>;
 using Image = std::array<Plane, 3>;
 
-// ---- Colour spaces; white is that of sRGB, D65 ----
+// ---- Colour spaces, from linear sRGB ----
 
+// XYZ of sRGB's white.
 constexpr Triple kWhite = {0.950428545, 1.0, 1.088900371};
 
 Triple ToXyz(const Triple& rgb) {
@@ -44,6 +46,8 @@ Triple ToRgb(const Triple& xyz) {
           0.0556300797 * xyz[0] - 0.2039769589 * xyz[1] + 1.0569715142 * xyz[2]};
 }
 
+// YCxCz, the paper's opponent space: lightness, red against green, blue against yellow. It is
+// CIELAB without the cube root, so that filtering stays linear.
 Triple ToOpponent(const Triple& rgb) {
   const Triple xyz = ToXyz(rgb);
   const double x = xyz[0] / kWhite[0], y = xyz[1] / kWhite[1], z = xyz[2] / kWhite[2];
@@ -56,7 +60,7 @@ Triple FromOpponent(const Triple& opponent) {
       {kWhite[0] * (y + opponent[1] / 500), kWhite[1] * y, kWhite[2] * (y - opponent[2] / 200)});
 }
 
-// CIELAB, its chroma scaled by lightness: Hunt's effect.
+// CIELAB with chroma scaled by lightness. That is Hunt's effect: dark colours look less colourful.
 Triple ToHuntLab(const Triple& rgb) {
   const Triple xyz = ToXyz(rgb);
   constexpr double kDelta = 6.0 / 29;
@@ -70,26 +74,27 @@ Triple ToHuntLab(const Triple& rgb) {
           0.01 * lightness * 200 * (f[1] - f[2])};
 }
 
+// The HyAB distance of Abasi et al. (2020): city-block in lightness, Euclidean in chroma. It suits
+// large differences of colour better than a Euclidean distance.
 double HyAb(const Triple& a, const Triple& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-// ---- Filters, each a product of one function of x and one of y ----
+// ---- Separable filters ----
 
-using Weights = std::vector<double>;  // at -radius .. radius
+using Kernel = std::vector<double>;  // values at -radius .. radius
 
-// `across` runs along x, `down` along y.
-Plane Convolve(const Plane& plane, const Weights& across, const Weights& down) {
+// Filters rows with `across`, then columns with `down`.
+Plane Convolve(const Plane& plane, const Kernel& across, const Kernel& down) {
   const int radius = static_cast<int>(across.size() / 2);
   Plane rows(plane.width, plane.height), result(plane.width, plane.height);
-  const auto filter = [radius](const Plane& from, const Weights& weights, int dx, int dy,
-                               Plane& to) {
+  const auto filter = [radius](const Plane& from, const Kernel& kernel, int dx, int dy, Plane& to) {
     std::size_t pixel = 0;
     for (int y = 0; y < from.height; ++y) {
       for (int x = 0; x < from.width; ++x) {
         double sum = 0;
         for (int i = -radius; i <= radius; ++i) {
-          sum += weights[static_cast<std::size_t>(i + radius)] * from.at(x + i * dx, y + i * dy);
+          sum += kernel[static_cast<std::size_t>(i + radius)] * from.at(x + i * dx, y + i * dy);
         }
         to.values[pixel++] = sum;
       }
@@ -100,30 +105,33 @@ Plane Convolve(const Plane& plane, const Weights& across, const Weights& down) {
   return result;
 }
 
-// sqrt(pi / b) exp(-pi^2 d^2 / b) with d in degrees, along one axis, unscaled.
-Weights GaussianOfDegrees(double b, int radius, double pixels_per_degree) {
-  Weights weights;
+// exp(-pi^2 d^2 / b) with d in degrees: the paper's Gaussian along one axis, without its factor
+// sqrt(pi / b).
+Kernel GaussianOfDegrees(double b, int radius, double pixels_per_degree) {
+  Kernel kernel;
   for (int i = -radius; i <= radius; ++i) {
     const double d = i / pixels_per_degree;
-    weights.push_back(std::exp(-kPi * kPi * d * d / b));
+    kernel.push_back(std::exp(-kPi * kPi * d * d / b));
   }
-  return weights;
+  return kernel;
 }
 
-double Sum(const Weights& weights) {
+double Sum(const Kernel& kernel) {
   double sum = 0;
-  for (const double weight : weights) sum += weight;
+  for (const double value : kernel) sum += value;
   return sum;
 }
 
-// The contrast sensitivity functions of Y, Cx and Cz (table 1 of the paper): sums of two Gaussians.
+// Contrast sensitivity of the eye to Y, Cx and Cz: a1 Gaussian(b1) + a2 Gaussian(b2). From table 1
+// of the paper.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
 constexpr Sensitivity kSensitivities[3] = {
     {1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}};
-constexpr double kWidest = 0.04;
+constexpr double kWidest = 0.04;  // the largest b1
 
+// What the eye resolves of one opponent channel.
 Plane FilterBySensitivity(const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
   const int radius =
       static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
@@ -131,11 +139,11 @@ Plane FilterBySensitivity(const Plane& plane, const Sensitivity& s, double pixel
   double total = 0;
   const auto add = [&](double a, double b) {
     if (a == 0) return;
-    const Weights weights = GaussianOfDegrees(b, radius, pixels_per_degree);
+    const Kernel kernel = GaussianOfDegrees(b, radius, pixels_per_degree);
     const double scale = a * std::sqrt(kPi / b);
-    const Plane part = Convolve(plane, weights, weights);
+    const Plane part = Convolve(plane, kernel, kernel);
     for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += scale * part.values[i];
-    total += scale * Sum(weights) * Sum(weights);
+    total += scale * Sum(kernel) * Sum(kernel);
   };
   add(s.a1, s.b1);
   add(s.a2, s.b2);
@@ -143,8 +151,9 @@ Plane FilterBySensitivity(const Plane& plane, const Sensitivity& s, double pixel
   return sum;
 }
 
-// ---- The two halves of the error ----
+// ---- The error of colours, and that of features ----
 
+// The film's pixels in opponent space, after clamping to [0, 1].
 Image OpponentImage(const Film& film) {
   Image image = {Plane(film.width, film.height), Plane(film.width, film.height),
                  Plane(film.width, film.height)};
@@ -162,7 +171,7 @@ Image OpponentImage(const Film& film) {
   return image;
 }
 
-// Colours as the eye resolves them.
+// The colours that the eye sees, blurred as it blurs them, in the space of HyAb.
 std::vector<Triple> SeenColours(const Image& opponent, double pixels_per_degree) {
   Image seen = opponent;
   for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -179,7 +188,8 @@ std::vector<Triple> SeenColours(const Image& opponent, double pixels_per_degree)
   return colours;
 }
 
-// Differences up to kBreak of the largest take the lower kBreakValue of the scale.
+// The error of two seen colours, in [0, 1]. The exponent compresses large differences. Then two
+// linear pieces meet at kBreak of the largest difference, where the error is kBreakValue.
 double ColourError(const Triple& a, const Triple& b) {
   constexpr double kExponent = 0.7, kBreak = 0.4, kBreakValue = 0.95;
   static const double kLargest =
@@ -190,24 +200,27 @@ double ColourError(const Triple& a, const Triple& b) {
   return kBreakValue + (error - at) / (kLargest - at) * (1 - kBreakValue);
 }
 
-// Strengths of edges and of points, from the first and second derivative of a Gaussian.
+// How strong an edge or a point is at each pixel. A Gaussian's first derivative finds edges, its
+// second derivative points.
 struct Features {
   std::vector<double> edges, points;
 };
 
-// Positive weights sum to 1, negative ones to -1.
-void Balance(Weights& derivative, double cross_sum) {
+// Scales a derivative so that its product with a Gaussian of sum `cross_sum` has positive values
+// that sum to 1 and negative values that sum to -1. A flat picture then has no features.
+void Balance(Kernel& derivative, double cross_sum) {
   double positive = 0, negative = 0;
-  for (const double weight : derivative) (weight > 0 ? positive : negative) += weight;
-  for (double& weight : derivative) {
-    weight /= (weight > 0 ? positive : -negative) * cross_sum;
+  for (const double value : derivative) (value > 0 ? positive : negative) += value;
+  for (double& value : derivative) {
+    value /= (value > 0 ? positive : -negative) * cross_sum;
   }
 }
 
 Features FindFeatures(const Plane& lightness, double pixels_per_degree) {
+  // The paper's features are 0.082 degrees wide.
   const double sd = 0.5 * 0.082 * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sd));
-  Weights gaussian, first, second;
+  Kernel gaussian, first, second;
   for (int i = -radius; i <= radius; ++i) {
     const double g = std::exp(-(i * i) / (2 * sd * sd));
     gaussian.push_back(g);
@@ -216,7 +229,7 @@ Features FindFeatures(const Plane& lightness, double pixels_per_degree) {
   }
   Balance(first, Sum(gaussian));
   Balance(second, Sum(gaussian));
-  const auto strength = [&](const Weights& derivative) {
+  const auto strength = [&](const Kernel& derivative) {
     const Plane across = Convolve(lightness, derivative, gaussian);
     const Plane down = Convolve(lightness, gaussian, derivative);
     std::vector<double> values;
@@ -247,6 +260,7 @@ double MeanFlip(const Film& reference, const Film& test, double pixels_per_degre
   for (std::size_t i = 0; i < colours_a.size(); ++i) {
     const double edge = std::abs(features_a.edges[i] - features_b.edges[i]);
     const double point = std::abs(features_a.points[i] - features_b.points[i]);
+    // Raises the error of the colours where a feature is in one picture only.
     const double feature_error = std::sqrt(std::max(edge, point) / std::numbers::sqrt2);
     sum += std::pow(ColourError(colours_a[i], colours_b[i]), 1 - feature_error);
   }

@@ -1,4 +1,4 @@
-// FLIP, the error that a person sees who flips between two pictures.
+// FLIP: the error that a person sees when flipping between two pictures.
 #ifndef SHEAF_LAB_FLIP_H_
 #define SHEAF_LAB_FLIP_H_
 
@@ -6,13 +6,14 @@
 
 namespace sheaf {
 
-// Pixels per degree of the paper's viewing conditions: 0.7 m from a monitor 0.7 m and 3840 pixels
-// wide.
+// Pixels per degree of visual angle. The paper's viewer sits 0.7 m from a monitor that is 0.7 m and
+// 3840 pixels wide.
 inline constexpr double kFlipPixelsPerDegree = 67.0206;
 
-// The mean over all pixels of the LDR FLIP of Andersson, Nilsson, Akenine-Moeller, Oskarsson,
-// Astrom, Fairchild, "FLIP: A Difference Evaluator for Alternating Images" (HPG 2020), in [0, 1].
-// Films hold linear light, clamped to [0, 1] (NaN is 0), have the same size and at least one pixel.
+// The mean FLIP error of all pixels, in [0, 1]: 0 for equal pictures. This is the LDR variant of
+// Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator
+// for Alternating Images" (HPG 2020). Films hold linear light; values are clamped to [0, 1], and
+// NaN counts as 0. Both films have the same size and at least one pixel.
 double MeanFlip(const Film& reference, const Film& test,
                 double pixels_per_degree = kFlipPixelsPerDegree);
 

@@ -17,7 +17,7 @@ double Difference(float a, float b) {
   return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
 }
 
-// Neighbouring floats are neighbouring integers, negative ones below zero.
+// Maps neighbouring floats to neighbouring integers. -0 is -1, +0 is 0.
 std::int64_t Rank(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const std::int64_t magnitude = bits & 0x7fffffffu;
@@ -40,7 +40,7 @@ PictureMetrics MeasurePictures(const Film& reference, const Film& test, Transfer
       most = std::max(most, difference);
     }
     metrics.largest = std::max(metrics.largest, most);
-    // Bytes apart by one are 1/255 apart, give or take the rounding of a division.
+    // Two bytes that differ by 1 do not count, however their division by 255 was rounded.
     metrics.over += most > 1.0 / 255 + 1e-6;
   }
   metrics.rmse = RootMeanSquare(reference, test);

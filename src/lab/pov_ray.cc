@@ -33,7 +33,7 @@ std::string Finish(const Scene& scene, const Material& material) {
       fmt::format("finish {{ ambient rgb {} diffuse {} specular {} roughness {}", Vector(ambient),
                   material.kd, material.ks, 1 / std::max(material.shininess, 1e-3));
   if (Transmits(material)) {
-    // From what the material reflects of itself to that and all that meets the glass.
+    // From the material's own reflectance at normal incidence to all light at grazing incidence.
     finish += fmt::format(" reflection {{ rgb {}, rgb 1 fresnel on }} conserve_energy",
                           Vector(material.reflect));
   } else if (glm::length(material.reflect) > 0) {
@@ -42,7 +42,8 @@ std::string Finish(const Scene& scene, const Material& material) {
   return finish + " }";
 }
 
-// POV-Ray's checker fills unit cubes of space; the middle of one layer of them is put on the quad.
+// POV-Ray's checker fills space with unit cubes. One layer of cubes is moved so that the quad cuts
+// it in the middle.
 std::string CheckerPigment(const Checker& checker, const Quad* quad) {
   std::string pattern =
       fmt::format("pigment {{ checker rgb {} rgb {}", Vector(checker.even), Vector(checker.odd));
@@ -63,7 +64,8 @@ std::string Pigment(const Material& material, const Quad* quad) {
   }
   const auto* texture = std::get_if<Texture>(&material.base_colour);
   const Colour colour = texture ? texture->factor : std::get<Colour>(material.base_colour);
-  // Energy is conserved: what is reflected in any case is taken off once.
+  // conserve_energy takes off what is reflected. So the material's own reflectance is divided out
+  // here, or it would be taken off twice.
   const double transmit =
       std::min(material.transmit.x / std::max(1 - material.reflect.x, 1e-6), 1.0);
   return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), transmit);
@@ -102,7 +104,7 @@ void WriteSphere(Out out, const Sphere& sphere, const Material& material, std::u
   const std::string center = Vector(sphere.center);
   fmt::format_to(out, "sphere {{ {}, {} texture {{ T{} }}", center, sphere.radius, index);
   if (Transmits(material)) {
-    // Glass casts an opaque shadow: its core is seen by shadow rays alone.
+    // Glass casts an opaque shadow: an opaque core that shadow rays alone see.
     fmt::format_to(out,
                    " interior {{ ior {} }} }}\n"
                    "sphere {{ {}, {} no_image no_reflection pigment {{ rgb 0 }}",
@@ -151,7 +153,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-// "Trace Time: ..." is followed by "using 1 thread(s) with 0.845 CPU-seconds total".
+// The seconds in "using 1 thread(s) with 0.845 CPU-seconds total", which follows "Trace Time: ...".
 std::optional<double> TraceSeconds(std::FILE* output) {
   std::optional<double> seconds;
   bool in_trace = false;
@@ -234,7 +236,7 @@ std::string PovText(const Scene& scene, const Camera& camera) {
       fmt::format_to(out, " }}\n");
     }
   }
-  // One mesh a material, which POV-Ray puts a tree of its own over.
+  // One mesh a material, because POV-Ray builds a tree for each mesh.
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     bool is_open = false;
     for (const Object& object : scene.objects) {
@@ -258,7 +260,7 @@ Result<PovRender> RenderWithPovRay(const Scene& scene, const Camera& camera, int
   };
   const TemporaryFolder folder;
   if (folder.path().empty()) return failed("no temporary folder");
-  Scene shown = scene;  // its size is the camera's aspect
+  Scene shown = scene;  // PovText takes the aspect from its size
   shown.settings.width = width;
   shown.settings.height = height;
   std::ofstream(folder.path() + "/scene.pov") << PovText(shown, camera);

@@ -7,11 +7,11 @@
 namespace sheaf {
 namespace {
 
-// Above this many pairs the normal approximation is as good as the count of all orders.
+// Above this many pairs the normal approximation is as good as the exact count.
 constexpr std::size_t kExactPairs = 900;
 
 struct Ranks {
-  double u = 0;     // pairs (a, b) with a < b, ties half
+  double u = 0;     // number of pairs (a, b) with a < b; a tie counts half
   double ties = 0;  // sum of t^3 - t over groups of t equal values
 };
 
@@ -33,11 +33,11 @@ Ranks RankPairs(const std::vector<double>& a, const std::vector<double>& b) {
   return ranks;
 }
 
-// The part of all orders of m and n values without ties whose U is at most `u`: counts by the
-// recurrence over whether the largest value is one of the m.
+// The probability that U is at most `u`, where m and n values without ties are ordered by chance.
+// Computed by a recurrence: the largest value is one of the m or one of the n.
 double ExactTail(std::size_t m, std::size_t n, double u) {
   const std::size_t most = m * n;
-  // share[i][k]: of the orders of i and j values, those with U = k; j grows in the outer loop.
+  // share[i][k] is the probability that U = k for i and j values. The outer loop raises j.
   std::vector<std::vector<double>> share(m + 1, std::vector<double>(most + 1, 0.0));
   for (std::size_t i = 0; i <= m; ++i) share[i][0] = 1;
   for (std::size_t j = 1; j <= n; ++j) {
@@ -57,7 +57,7 @@ double ExactTail(std::size_t m, std::size_t n, double u) {
   return sum;
 }
 
-// The normal approximation, corrected for continuity and ties.
+// The same probability by the normal approximation, corrected for continuity and ties.
 double ApproximateTail(std::size_t m, std::size_t n, double u, double ties) {
   const double pairs = static_cast<double>(m * n), all = static_cast<double>(m + n);
   const double variance = pairs / 12 * (all + 1 - ties / (all * (all - 1)));
@@ -77,7 +77,8 @@ double Median(std::vector<double> values) {
 Interval MedianInterval(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
-  // P(fewer than k of n values lie below the median), twice, must stay within 5 %.
+  // At most k of n values lie below the median with probability `tail`. Both tails together must
+  // stay within 5 %.
   double term = std::pow(0.5, static_cast<double>(n)), tail = term;
   std::size_t k = 0;  // values left out on either side
   while (k + 1 < (n + 1) / 2) {

@@ -1,4 +1,5 @@
-// Statistics that assume no distribution: medians, their intervals, and a test of two samples.
+// Statistics by rank, which assume no distribution: the median, its confidence interval, and a test
+// whether two samples differ.
 #ifndef SHEAF_LAB_RANK_STATISTICS_H_
 #define SHEAF_LAB_RANK_STATISTICS_H_
 
@@ -7,30 +8,30 @@
 
 namespace sheaf {
 
-// `values` is not empty; the mean of the middle two where their count is even.
+// The middle value; the mean of the middle two where their count is even. `values` is not empty.
 double Median(std::vector<double> values);
 
 struct Interval {
   double low, high;
 };
 
-// Fewer values reach no confidence of 95 %.
+// With fewer values no interval reaches 95 % confidence.
 inline constexpr std::size_t kLeastForInterval = 6;
 
-// Holds the median of the distribution with at least 95 % confidence: between the k-th smallest and
-// the k-th largest value, for the largest k whose binomial tails allow it. Of fewer values than
-// kLeastForInterval all lie within. Not empty.
+// A confidence interval of the median, at least 95 %. It runs from the k-th smallest to the k-th
+// largest value. k is the largest for which the two binomial tails stay within 5 %. With fewer than
+// kLeastForInterval values it runs from the smallest to the largest. `values` is not empty.
 Interval MedianInterval(std::vector<double> values);
 
-// The distance of the quartiles over the median; 0 for fewer than 4 values.
+// The interquartile range over the median. 0 for fewer than 4 values.
 double RelativeSpread(std::vector<double> values);
 
-// Two-sided p of the test of Mann and Whitney, "On a Test of Whether one of Two Random Variables is
-// Stochastically Larger than the Other" (1947): exact for small samples without ties, else by the
-// normal approximation. Neither sample is empty.
+// The two-sided p value of the test of Mann and Whitney, "On a Test of Whether one of Two Random
+// Variables is Stochastically Larger than the Other" (1947). Exact for small samples without ties,
+// otherwise by the normal approximation. Neither sample is empty.
 double MannWhitneyP(const std::vector<double>& a, const std::vector<double>& b);
 
-// The smallest p that samples of these sizes can reach.
+// The smallest p value that samples of `a` and `b` values can reach.
 double SmallestP(int a, int b);
 
 }  // namespace sheaf

@@ -48,15 +48,16 @@ class Report {
   std::vector<std::string> lines_, notes_;
 };
 
+enum class Subject { kRays, kPictures };
+
 struct Case {
   const char* name;  // lower case, '-' between words
   const char* expected;
+  Subject subject;  // a single ray can be replayed where it is kRays
   void (*run)(Report& report);
 };
 
-// Those that trace rays, and those that render pictures.
-std::span<const Case> RayCases();
-std::span<const Case> PictureCases();
+std::span<const Case> Cases();
 
 }  // namespace sheaf::stress
 

@@ -1,4 +1,4 @@
-#include "src/render/object_at.h"
+#include "src/lab/object_at.h"
 
 #include "simd/query.h"
 #include "simd/shading.h"

@@ -1,6 +1,6 @@
 // What a picture shows at a place.
-#ifndef SHEAF_RENDER_OBJECT_AT_H_
-#define SHEAF_RENDER_OBJECT_AT_H_
+#ifndef SHEAF_LAB_OBJECT_AT_H_
+#define SHEAF_LAB_OBJECT_AT_H_
 
 #include <cstdint>
 #include <optional>
@@ -16,4 +16,4 @@ std::optional<std::uint32_t> ObjectAt(const Scene& scene, const Camera& camera, 
 
 }  // namespace sheaf
 
-#endif  // SHEAF_RENDER_OBJECT_AT_H_
+#endif  // SHEAF_LAB_OBJECT_AT_H_

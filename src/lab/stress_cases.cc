@@ -1,0 +1,88 @@
+#include "src/lab/stress_cases.h"
+
+namespace sheaf::stress {
+namespace {
+
+constexpr auto kRays = Subject::kRays;
+constexpr auto kPictures = Subject::kPictures;
+
+constexpr Case kCases[] = {
+    {"far-leaks", "meshes at (148376, 1234, -223423): rays at vertices and edges hit", kRays,
+     FarLeaks},
+    {"origin-leaks", "the same at the origin and at 1e7", kRays, OriginLeaks},
+    {"grid-leaks", "an integer grid, axis-parallel rays at edges and vertices: hit", kRays,
+     GridLeaks},
+    {"diagonal", "a ray at the diagonal of a quad: hit near (3.375, 3.375, 0)", kRays, Diagonal},
+    {"slanted-edge", "a ray exactly at an edge that two triangles share: hit", kRays, SlantedEdge},
+    {"collinear", "a triangle of three points of a line: miss", kRays, Collinear},
+    {"half-sphere", "rays exactly at the vertices of half a sphere: hit", kRays, HalfSphere},
+    {"perturbed-spheres", "rays at the vertices of perturbed spheres: hit", kRays,
+     PerturbedSpheres},
+    {"self-hits", "spheres of 1e-4 to 1e4 at 1e-8 to 1e8: no new ray hits its own surface", kRays,
+     SelfHits},
+    {"acne", "every scale, grazing too: no ray, no light's ray meets its own surface", kRays, Acne},
+    {"nearly-equal-spheres", "radii 1 and 1.00004: both surfaces found", kRays, NearlyEqualSpheres},
+    {"near-tangent", "to either side of tangent, from 1 to 1e6 radii: judged right", kRays,
+     NearTangent},
+    {"ground-sphere", "radius 1e6 seen from 1 above: t within 1 ULP", kRays, GroundSphere},
+    {"on-sphere", "origin on a sphere: outward misses, inward takes the far root", kRays, OnSphere},
+    {"from-centre", "from the centre: the far root, t is the radius", kRays, FromCentre},
+    {"bad-radius", "radius 0 misses; negative, infinite, NaN: an error", kRays, BadRadius},
+    {"powers-of-two", "scaled by 2^-40 to 2^40: t scales bit for bit", kRays, PowersOfTwo},
+    {"slivers", "triangles 1e-4 to 1e-8 wide: no leak", kRays, Slivers},
+    {"zero-area", "triangles without area: miss, no NaN", kRays, ZeroArea},
+    {"coplanar-duplicates", "surfaces in one place: the lowest id", kRays, CoplanarDuplicates},
+    {"in-plane", "rays in the planes of triangles: all agree, no NaN", kRays, InPlane},
+    {"minus-zero", "-0 traces as +0", kRays, MinusZero},
+    {"bad-directions", "zero, NaN and infinite directions: miss", kRays, BadDirections},
+    {"bad-numbers", "NaN or infinity in origin, t_min, t_max: miss", kRays, BadNumbers},
+    {"box-face", "along the faces of boxes, direction 0 on their axis: hit", kRays, BoxFace},
+    {"denormals", "denormal vertices and directions: all agree", kRays, Denormals},
+    {"intervals", "t = t_min = t_max counts, t_min > t_max misses, infinite t_max", kRays,
+     Intervals},
+    {"long-directions", "directions of length 1e-20 to 1e20: t scales", kRays, LongDirections},
+    {"critical-angle", "8 ULP around critical: total reflection as in long double", kRays,
+     CriticalAngle},
+    {"extreme-iors", "1e-3 to 1e3: energy kept; 1: unbent and no reflection", kRays, ExtremeIors},
+    {"duplicates", "100,000 equal triangles: the build ends, the lowest id", kRays, Duplicates},
+    {"linear-memory", "up to a million triangles: at most 70 bytes each", kRays, LinearMemory},
+    {"fan", "1,000 triangles at a vertex: no leak", kRays, Fan},
+    {"ulp-apart", "two surfaces 1 ULP apart: the nearer", kRays, UlpApart},
+    {"horizon", "grazing rays along a floor: all that point down hit", kRays, Horizon},
+    {"many-in-one-place", "a million spheres in a point, in a line: the build ends, the right one",
+     kRays, ManyInOnePlace},
+    {"scaled-world", "a mesh scaled 1e-6 to 1e6, moved by 1e6 of it: no leak", kRays, ScaledWorld},
+    {"random-scenes", "random scenes: every primitive, tree and target agree", kRays, RandomScenes},
+    {"clear-glass", "ior 1: undeviated, no reflection", kPictures, ClearGlass},
+    {"extreme-glass", "ior 1e-3 to 1e3: no light is made, the same bits", kPictures, ExtremeGlass},
+    {"nested-glass", "nested and touching, the eye inside: no light is made", kPictures,
+     NestedGlass},
+    {"hall-of-mirrors", "reflectance 1, deep: one ray a pixel and depth", kPictures, HallOfMirrors},
+    {"mirror-series", "reflectance 1/2 all around: the sum of the geometric series", kPictures,
+     MirrorSeries},
+    {"lights-in-the-way", "a light at, on and in a surface: finite, the same bits", kPictures,
+     LightsInTheWay},
+    {"bad-materials", "NaN, negative, overflowing, no number: an error of one line", kPictures,
+     BadMaterials},
+    {"shininess", "0, 1 and 1e6: no NaN", kPictures, Shininess},
+    {"mirrored-winding", "either winding: the normal faces the eye", kPictures, MirroredWinding},
+    {"transforms", "singular: an error with its place; mirrored: the right normals", kPictures,
+     Transforms},
+    {"shadow-terminator", "coarse balls with smooth normals: no shadow of their own", kPictures,
+     ShadowTerminator},
+    {"odd-sizes", "1x1, 1xN, primes: the same bits as the crop", kPictures, OddSizes},
+    {"nothing", "no objects, no lights, no pixels: background, ambient, an error", kPictures,
+     Nothing},
+    {"fields-of-view", "1e-3 and 179.9 degrees: finite, the same bits", kPictures, FieldsOfView},
+    {"overbright-surfaces", "kd + ks > 1: more than white, as it is", kPictures,
+     OverbrightSurfaces},
+    {"many-lights", "a million faint lights are one bright one", kPictures, ManyLights},
+    {"scaled-pictures", "1e-6 to 1e6 in size, moved by 1e6 of it: no acne", kPictures,
+     ScaledPictures},
+};
+
+}  // namespace
+
+std::span<const Case> Cases() { return kCases; }
+
+}  // namespace sheaf::stress
