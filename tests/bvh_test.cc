@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -322,10 +323,22 @@ std::pair<std::uint32_t, std::uint32_t> FindChild(const Tree<float>& tree, const
 
 bool IsPresentLeaf(std::uint32_t child) { return IsLeaf(child) && child != kNoChild; }
 
-TEST_CASE("planted defects are found") {
+void ExpectFound(std::span<const Planted> planted) {
   Random random(8);
   const Primitives<float> primitives = RandomPrimitives<float>(random, 3000, 1, 0.02);
   const GeometryView<float> geometry = primitives.view();
+  for (const Planted& entry : planted) {
+    Tree<float> tree = SoundTree(geometry);
+    const std::string defect = entry.defect;
+    entry.plant(tree);
+    const std::string found = FindTreeDefect(tree.view(), geometry);
+    CAPTURE(defect);
+    CAPTURE(found);
+    CHECK(found.find(defect) != std::string::npos);
+  }
+}
+
+TEST_CASE("planted defects of primitives and children are found") {
   const Planted planted[] = {
       {"missing", [](Tree<float>& tree) { tree.node_count = 0; }},
       {"is there twice", [](Tree<float>& tree) { tree.triangle_id[5] = tree.triangle_id[4]; }},
@@ -352,12 +365,16 @@ TEST_CASE("planted defects are found") {
          const auto [node, slot] = FindChild(tree, inner);
          tree.nodes[node].child[slot] = tree.node_count;
        }},
-      {"a leaf beyond the last",
-       [](Tree<float>& tree) {
+      {"a leaf beyond the last", [](Tree<float>& tree) {
          const auto [node, slot] = FindChild(tree, IsPresentLeaf);
          tree.nodes[node].child[slot] =
              MakeLeaf(kTriangleLeafBit, tree.triangle_count - 1, kMaxLeafSize);
-       }},
+       }}};
+  ExpectFound(planted);
+}
+
+TEST_CASE("planted defects of boxes, orders and counts are found") {
+  const Planted planted[] = {
       {"does not contain",
        [](Tree<float>& tree) {
          const auto [node, slot] = FindChild(tree, IsPresentLeaf);
@@ -420,15 +437,7 @@ TEST_CASE("planted defects are found") {
          tree.nodes = std::move(nodes);
          ++tree.node_count;
        }}};
-  for (const Planted& entry : planted) {
-    Tree<float> tree = SoundTree(geometry);
-    const std::string defect = entry.defect;
-    entry.plant(tree);
-    const std::string found = FindTreeDefect(tree.view(), geometry);
-    CAPTURE(defect);
-    CAPTURE(found);
-    CHECK(found.find(defect) != std::string::npos);
-  }
+  ExpectFound(planted);
 }
 
 TEST_CASE("a tree that is too deep is found") {

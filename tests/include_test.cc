@@ -6,9 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -16,19 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "source_tree.h"
+
 namespace sheaf {
 namespace {
 
-namespace fs = std::filesystem;
-
-using Texts = std::map<std::string, std::string>;  // text by path from the root, '/' between
-
-bool StartsWith(std::string_view text, std::string_view prefix) {
-  return text.substr(0, prefix.size()) == prefix;
-}
-bool EndsWith(std::string_view text, std::string_view suffix) {
-  return text.size() >= suffix.size() && text.substr(text.size() - suffix.size()) == suffix;
-}
 bool IsHighway(std::string_view include) { return StartsWith(include, "hwy/"); }
 
 struct Include {
@@ -193,19 +182,6 @@ std::vector<std::string> Violations(const Texts& texts) {
     if (lower.find("hwy") != std::string::npos) violations.push_back(path + " mentions hwy");
   }
   return violations;
-}
-
-Texts ReadTree(const fs::path& root) {
-  Texts texts;
-  for (const char* directory : {"src", "simd", "tests", "bench"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / directory)) {
-      std::string path = fs::relative(entry.path(), root).generic_string();
-      if (!entry.is_regular_file() || !(EndsWith(path, ".h") || EndsWith(path, ".cc"))) continue;
-      std::ifstream file(entry.path(), std::ios::binary);
-      texts[path] = std::string(std::istreambuf_iterator<char>(file), {});
-    }
-  }
-  return texts;
 }
 
 TEST_CASE("the tree keeps to the direction of includes, to its guards and to plain headers") {

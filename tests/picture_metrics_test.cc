@@ -8,7 +8,7 @@
 
 #include "src/formats/scene_json.h"
 #include "src/lab/flip.h"
-#include "src/render/object_at.h"
+#include "src/lab/object_at.h"
 
 namespace sheaf {
 namespace {

@@ -29,6 +29,7 @@ inline Vec3d UniformPoint(Random& random, double low, double high) {
 }
 
 inline Vec3<double> ToVec3(const Vec3d& v) { return {v.x, v.y, v.z}; }
+inline Vec3d ToGlm(Vec3<double> v) { return {v.x, v.y, v.z}; }
 
 inline Vec3<double> RandomUnit(Random& random) {
   return Normalize(ToVec3(UniformPoint(random, -1, 1)));
