@@ -1,6 +1,5 @@
-// Rays that are no rays (no direction, NaN, infinity), and batches that hold some, beside sound
-// ones: they may not cost much more. Rows are TraceClosest/WHAT/TARGET and
-// TraceOccluded/WHAT/TARGET.
+// Invalid rays (no direction, NaN, infinity) and batches that hold some, beside valid ones: they
+// may not cost much more. Rows are TraceClosest/WHAT/TARGET and TraceOccluded/WHAT/TARGET.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -14,7 +14,7 @@
 
 namespace sheaf::bench {
 
-// What callers tell Sheaf of their rays. Embree is always told.
+// Whether Sheaf gets a coherence hint with its rays. Embree always gets its own.
 enum class Hints { kGiven, kNone };
 
 struct CompareOptions {
@@ -25,11 +25,11 @@ struct CompareOptions {
   Hints hints = Hints::kGiven;
 };
 
-// Rays whose answers differ, by why. The first three need another t than within 1e-4 of it.
+// Numbers of rays whose answers differ, by reason.
 struct Differences {
-  std::uint32_t embree_missed = 0;  // Sheaf hit; of shadow rays: is in shadow
+  std::uint32_t embree_missed = 0;  // only Sheaf hit, or found the point in shadow
   std::uint32_t sheaf_missed = 0;
-  std::uint32_t other_t = 0;    // both hit, at different places
+  std::uint32_t other_t = 0;    // both hit, with t more than 1e-4 of it apart
   std::uint32_t other_tie = 0;  // the same t, another primitive: a shared edge
 
   std::uint32_t total() const { return embree_missed + sheaf_missed + other_t + other_tie; }
@@ -54,11 +54,11 @@ struct Comparison {
   std::vector<TargetResult> targets;
 };
 
-// Times all kinds of rays of options.kinds over `scene`, and hands over each comparison when it is
-// made. Embree is called in every way, then the two fastest ways take part in the repetitions.
-// Embree's time is that of the calls alone, over rays already in its layout; Sheaf's is one call of
-// TraceClosest (t, primitive, u and v) or TraceOccluded. The baseline traces all rays, too: on a
-// sample of them it is up to a tenth slower a ray.
+// Times all kinds of rays of options.kinds over `scene`, and reports each comparison when it is
+// made. All of Embree's calls are tried, then the two fastest take part in the repetitions.
+// Embree's time is that of the calls alone, over rays already in its layout. Sheaf's time is one
+// call of TraceClosest (t, primitive, u and v) or TraceOccluded. The baseline traces all rays as
+// well: on a sample of them it would be up to a tenth slower a ray.
 void CompareTracers(const BenchScene& scene, const CompareOptions& options,
                     const std::function<void(const Comparison&)>& report);
 
