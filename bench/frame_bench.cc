@@ -17,6 +17,7 @@
 #include "src/core/running_target.h"
 #include "src/formats/scene_json.h"
 #include "src/lab/pov_ray.h"
+#include "src/render/render_frame.h"
 
 namespace {
 
@@ -26,11 +27,8 @@ using namespace sheaf;  // NOLINT: a program of its own
 void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& camera,
                  const std::string& target, Skips skips) {
   RenderOptions options;
-  options.width = scene.settings.width;
-  options.height = scene.settings.height;
-  options.max_depth = scene.settings.max_depth;
+  options.samples = 1;
   options.threads = 1;
-  options.skips = skips;
   const std::optional<Target> chosen = Target::Named(target);
   if (!chosen) {
     state.SkipWithError("the target is not usable");
@@ -38,13 +36,13 @@ void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& came
   }
   options.target = *chosen;
   // As the command does it, but for the writing.
-  const RowSink drop = [](const Film& rows) {
+  const BandSink drop = [](const Film& rows) {
     benchmark::DoNotOptimize(rows.rgb.data());
     return Status(Done{});
   };
   RenderStats stats;
   for (auto _ : state) {
-    if (!RenderRows(scene, camera, options, drop, &stats)) {
+    if (!RenderFrame(scene, camera, options, skips, drop, &stats, nullptr)) {
       state.SkipWithError("rendering failed");
       return;
     }

@@ -1,55 +1,55 @@
 #include "src/app/heat_picture.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
-#include <vector>
+#include <cstddef>
 
 #include "src/formats/picture.h"
 
 namespace sheaf {
-namespace {
 
-using Heat = std::array<float, 3>;
+HeatPicture::HeatPicture(const RenderOptions& options)
+    : area_(options.crop.value_or(PixelRect{0, 0, options.width, options.height})),
+      tile_size_(options.tile_size) {}
+
+void HeatPicture::AddRows(const Film& rows) {
+  for (int y = 0; y < rows.height; y += tile_size_) {
+    for (int x = 0; x < rows.width; x += tile_size_) {
+      const float* heat = rows.at(Layer::kHeat, x, y);
+      tiles_.push_back({heat[0], heat[1], heat[2]});
+    }
+  }
+}
 
 // The value that a hundredth of the tiles exceed: a tile that another process interrupted would
 // leave all others dark.
-float UsualMost(const std::vector<TileCost>& tiles, std::size_t channel) {
+float HeatPicture::UsualMost(std::size_t channel) const {
   std::vector<float> values;
-  for (const TileCost& cost : tiles) values.push_back(HeatOf(cost)[channel]);
+  for (const Heat& heat : tiles_) values.push_back(heat[channel]);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 99 / 100);
   std::nth_element(values.begin(), at, values.end());
   return *at > 0 ? *at : 1;
 }
 
-}  // namespace
+std::size_t HeatPicture::columns() const {
+  return static_cast<std::size_t>((area_.width() + tile_size_ - 1) / tile_size_);
+}
 
-Status WriteHeatPicture(const RenderOptions& options, const RenderStats& stats,
-                        const std::string& path) {
-  std::vector<TileCost> tiles = stats.tiles;
-  std::sort(tiles.begin(), tiles.end(), [](const TileCost& a, const TileCost& b) {
-    return std::pair(a.tile.y0, a.tile.x0) < std::pair(b.tile.y0, b.tile.x0);
-  });
+Status HeatPicture::Write(const std::string& path) const {
   Heat scale = {1, 1, 1};
   if (!HoldsFloats(path)) {
-    for (const std::size_t i : {0, 2}) scale[i] = 1 / UsualMost(tiles, i);
+    for (const std::size_t i : {0, 2}) scale[i] = 1 / UsualMost(i);
   }
-  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
   Result<PictureWriter> writer =
-      PictureWriter::Create(path, area.width(), area.height(), Transfer::kLinear);
+      PictureWriter::Create(path, area_.width(), area_.height(), Transfer::kLinear);
   if (!writer) return writer.error();
-  Film row(area.width(), 1);
-  for (auto tile = tiles.begin(); tile != tiles.end();) {
-    const PixelRect first = tile->tile;
-    for (; tile != tiles.end() && tile->tile.y0 == first.y0; ++tile) {
-      const Heat heat = HeatOf(*tile);
-      for (int x = tile->tile.x0; x < tile->tile.x1; ++x) {
-        for (std::size_t i = 0; i < 3; ++i) row.pixel(x - area.x0, 0)[i] = heat[i] * scale[i];
-      }
+  Film row(area_.width(), 1);
+  for (int y = 0; y < area_.height(); ++y) {
+    const Heat* tiles = &tiles_[static_cast<std::size_t>(y / tile_size_) * columns()];
+    for (int x = 0; x < area_.width(); ++x) {
+      const Heat& heat = tiles[x / tile_size_];
+      for (std::size_t i = 0; i < 3; ++i) row.pixel(x, 0)[i] = heat[i] * scale[i];
     }
-    for (int y = first.y0; y < first.y1; ++y) {
-      if (const Status written = writer.value().WriteRows(row); !written) return written;
-    }
+    if (const Status written = writer.value().WriteRows(row); !written) return written;
   }
   return writer.value().Finish();
 }

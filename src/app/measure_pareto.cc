@@ -35,7 +35,7 @@ struct Setting {
     std::string name = fmt::format("{}, {} spp", PrecisionName(options.precision), options.samples);
     if (options.contrast) name += fmt::format(", adaptive {:g}", *options.contrast);
     if (options.min_throughput > 0)
-      name += fmt::format(", min-weight {:g}", options.min_throughput);
+      name += fmt::format(", min-throughput {:g}", options.min_throughput);
     return name + fmt::format(", depth {}", options.max_depth);
   }
 };

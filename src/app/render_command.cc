@@ -99,7 +99,6 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.threads = request.threads.value_or(options.threads);
   options.tile_size = request.tile.size.value_or(options.tile_size);
   options.layers = request.layers;
-  options.tile_costs = request.layers.has(Layer::kHeat) ? TileCosts::kOn : TileCosts::kOff;
   if (const int part = request.tile.part, parts = request.tile.parts; parts > 0) {
     if (parts > options.height) {
       return Usage(
@@ -143,7 +142,11 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_pat
   Result<FrameWriter> writer = FrameWriter::Create(scene, frame, options, bits, scene_path);
   if (!writer) return writer.error();
   FrameWatch watch(style, std::move(label), options, PixelCount(size));
-  const RowSink write = [&](const Film& rows) { return writer.value().WriteRows(rows); };
+  HeatPicture heat(options);
+  const RowSink write = [&](const Film& rows) {
+    if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
+    return writer.value().WriteRows(rows);
+  };
   const Status rendered =
       RenderRows(scene, *frame.camera, options, write, &record.stats, watch.progress());
   // A signal in the last tenth of a second may find the frame finished. The command stops even so.
@@ -156,8 +159,7 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_pat
   if (const Status written = writer.value().Finish(); !written) return written.error();
   for (const auto& [layer, path] : frame.beside) {
     if (layer != Layer::kHeat) continue;
-    const Status written = WriteHeatPicture(options, record.stats, path);
-    if (!written) return written.error();
+    if (const Status written = heat.Write(path); !written) return written.error();
   }
   return record;
 }

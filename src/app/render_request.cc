@@ -40,7 +40,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
              "A ray deeper than this is black; primary rays have depth 0");
   AddShare(app, "--adaptive", request.contrast, "T",
            "All samples only where neighbours differ by more than T; else one");
-  AddShare(app, "--min-weight", request.min_throughput, "W",
+  AddShare(app, "--min-throughput,--min-weight", request.min_throughput, "W",
            "Rays that add at most this part of what they see are not traced");
   AddParsed(app, "--crop", request.crop, "x0,y0,x1,y1",
             "a rectangle like 0,0,320,240 with x0 < x1 and y0 < y1",

@@ -65,7 +65,7 @@ Json FrameJson(const FrameRecord& frame) {
   };
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
-  if (options.min_throughput > 0) json["min_throughput"] = options.min_throughput;
+  if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;
   if (options.crop) {
     json["crop"] = {options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1};
   }

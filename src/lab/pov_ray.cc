@@ -15,6 +15,7 @@
 #include <optional>
 #include <variant>
 
+#include "src/core/match.h"
 #include "src/lab/has_program.h"
 
 namespace sheaf {
@@ -59,13 +60,16 @@ std::string CheckerPigment(const Checker& checker, const Quad* quad) {
 }
 
 std::string Pigment(const Material& material, const Quad* quad) {
-  if (const auto* checker = std::get_if<Checker>(&material.base_colour)) {
-    return CheckerPigment(*checker, quad);
-  }
-  const auto* texture = std::get_if<Texture>(&material.base_colour);
-  const Colour colour = texture ? texture->factor : std::get<Colour>(material.base_colour);
-  // conserve_energy takes off what is reflected. So the material's own reflectance is divided out
-  // here, or it would be taken off twice.
+  const Checker* checker = nullptr;
+  const Colour colour = Match(
+      material.base_colour, [](const Colour& constant) { return constant; },
+      [&](const Checker& squares) {
+        checker = &squares;
+        return squares.even;
+      },
+      [](const Texture& texture) { return texture.factor; });
+  if (checker) return CheckerPigment(*checker, quad);
+  // Energy is conserved: what is reflected in any case is taken off once.
   const double transmit =
       std::min(material.transmit.x / std::max(1 - material.reflect.x, 1e-6), 1.0);
   return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), transmit);
@@ -77,26 +81,28 @@ std::string TextureText(const Scene& scene, const Material& material, const Quad
 
 void WriteLight(Out out, const Scene& scene, const Light& light) {
   Vec3d colour = light.colour * light.intensity * scene.settings.exposure;
-  if (const auto* sun = std::get_if<DirectionalLight>(&light.source)) {
-    fmt::format_to(out, "light_source {{ {} rgb {} parallel point_at 0", Vector(-sun->direction),
-                   Vector(colour));
-  } else {
-    const PointLight& point = std::get<PointLight>(light.source);
-    // At distance d POV-Ray's light has 2 / (1 + (d / fade_distance)^fade_power) of its colour.
-    constexpr double kNear = 1e-3;
-    std::string fade;
-    if (point.falloff.quadratic > 0) {
-      colour /= 2 * kNear * kNear * point.falloff.quadratic;
-      fade = fmt::format(" fade_distance {} fade_power 2", kNear);
-    } else if (point.falloff.linear > 0) {
-      colour /= 2 * kNear * point.falloff.linear;
-      fade = fmt::format(" fade_distance {} fade_power 1", kNear);
-    } else {
-      colour /= point.falloff.constant;
-    }
-    fmt::format_to(out, "light_source {{ {} rgb {}{}", Vector(point.position), Vector(colour),
-                   fade);
-  }
+  Match(
+      light.source,
+      [&](const DirectionalLight& sun) {
+        fmt::format_to(out, "light_source {{ {} rgb {} parallel point_at 0", Vector(-sun.direction),
+                       Vector(colour));
+      },
+      [&](const PointLight& point) {
+        // At distance d POV-Ray's light has 2 / (1 + (d / fade_distance)^fade_power) of its colour.
+        constexpr double kNear = 1e-3;
+        std::string fade;
+        if (point.falloff.quadratic > 0) {
+          colour /= 2 * kNear * kNear * point.falloff.quadratic;
+          fade = fmt::format(" fade_distance {} fade_power 2", kNear);
+        } else if (point.falloff.linear > 0) {
+          colour /= 2 * kNear * point.falloff.linear;
+          fade = fmt::format(" fade_distance {} fade_power 1", kNear);
+        } else {
+          colour /= point.falloff.constant;
+        }
+        fmt::format_to(out, "light_source {{ {} rgb {}{}", Vector(point.position), Vector(colour),
+                       fade);
+      });
   fmt::format_to(out, "{} }}\n", light.casts_shadows ? "" : " shadowless");
 }
 
@@ -222,19 +228,22 @@ std::string PovText(const Scene& scene, const Camera& camera) {
   }
   for (const Object& object : scene.objects) {
     const Material& material = scene.materials[object.material];
-    if (const auto* sphere = std::get_if<Sphere>(&object.shape)) {
-      WriteSphere(out, *sphere, material, object.material);
-    } else if (const auto* quad = std::get_if<Quad>(&object.shape)) {
-      fmt::format_to(out, "mesh {{\n");
-      WriteTriangle(out, quad->corners[0], quad->corners[1], quad->corners[2]);
-      WriteTriangle(out, quad->corners[0], quad->corners[2], quad->corners[3]);
-      fmt::format_to(out, "{} }}\n", TextureText(scene, material, quad));
-    } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
-      WriteMesh(out, *mesh);
-      fmt::format_to(out, "texture {{ T{} }}", object.material);
-      if (Transmits(material)) fmt::format_to(out, " interior {{ ior {} }}", material.ior);
-      fmt::format_to(out, " }}\n");
-    }
+    Match(
+        object.shape,
+        [&](const Sphere& sphere) { WriteSphere(out, sphere, material, object.material); },
+        [&](const Quad& quad) {
+          fmt::format_to(out, "mesh {{\n");
+          WriteTriangle(out, quad.corners[0], quad.corners[1], quad.corners[2]);
+          WriteTriangle(out, quad.corners[0], quad.corners[2], quad.corners[3]);
+          fmt::format_to(out, "{} }}\n", TextureText(scene, material, &quad));
+        },
+        [](const Triangle&) {},  // below
+        [&](const Mesh& mesh) {
+          WriteMesh(out, mesh);
+          fmt::format_to(out, "texture {{ T{} }}", object.material);
+          if (Transmits(material)) fmt::format_to(out, " interior {{ ior {} }}", material.ior);
+          fmt::format_to(out, " }}\n");
+        });
   }
   // One mesh a material, because POV-Ray builds a tree for each mesh.
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "simd/streams.h"
 #include "simd/tree.h"
 #include "src/core/has_area.h"
+#include "src/core/match.h"
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
 #include "src/scene/srgb.h"
@@ -193,19 +194,25 @@ class GeometryWriter {
 };
 
 template <typename Real>
+void StoreBaseColour(BaseColour kind, const Checker& checker, MaterialData<Real>& data) {
+  data.kind = kind;
+  Store(checker.even, data.even);
+  Store(checker.odd, data.odd);
+  for (int i = 0; i < 2; ++i) data.cells[i] = static_cast<Real>(checker.cells[i]);
+}
+
+template <typename Real>
 MaterialData<Real> CompileMaterial(const Material& material, const Settings& settings) {
   MaterialData<Real> data{};
-  const Checker* checker = std::get_if<Checker>(&material.base_colour);
-  const Texture* texture = std::get_if<Texture>(&material.base_colour);
-  const Colour even = checker   ? checker->even
-                      : texture ? texture->factor
-                                : std::get<Colour>(material.base_colour);
-  data.kind = checker   ? BaseColour::kChecker
-              : texture ? BaseColour::kTexture
-                        : BaseColour::kConstant;
-  Store(even, data.even);
-  Store(checker ? checker->odd : even, data.odd);
-  for (int i = 0; i < 2; ++i) data.cells[i] = static_cast<Real>(checker ? checker->cells[i] : 1);
+  Match(
+      material.base_colour,
+      [&](const Colour& colour) {
+        StoreBaseColour(BaseColour::kConstant, {colour, colour}, data);
+      },
+      [&](const Checker& checker) { StoreBaseColour(BaseColour::kChecker, checker, data); },
+      [&](const Texture& texture) {
+        StoreBaseColour(BaseColour::kTexture, {texture.factor, texture.factor}, data);
+      });
   Store(material.ambient * settings.ambient.value_or(settings.background), data.ambient);
   Store(material.emission, data.emission);
   data.kd = static_cast<Real>(material.kd);
@@ -262,17 +269,14 @@ double Reach(const Bounds& bounds, const glm::dvec3& p) {
 }
 
 template <typename Real>
-LightData<Real> CompileLight(const Light& light, const Settings& settings, const Bounds& bounds) {
-  LightData<Real> data{};
-  data.casts_shadows = light.casts_shadows;
-  Store(light.colour * (light.intensity * settings.exposure), data.rgb);
-  if (const auto* directional = std::get_if<DirectionalLight>(&light.source)) {
-    data.kind = LightKind::kDirectional;
-    Store(-Unit(directional->direction), data.vector);
-    data.falloff[0] = 1;
-    return data;
-  }
-  const auto& point = std::get<PointLight>(light.source);
+void StoreSource(const DirectionalLight& sun, const Bounds& /*bounds*/, LightData<Real>& data) {
+  data.kind = LightKind::kDirectional;
+  Store(-Unit(sun.direction), data.vector);
+  data.falloff[0] = 1;
+}
+
+template <typename Real>
+void StoreSource(const PointLight& point, const Bounds& bounds, LightData<Real>& data) {
   const double diameter = LengthOf(bounds.high - bounds.low);
   const bool is_near =
       Reach(bounds, point.position) <= kMaxLightDiameters * diameter;  // false without objects
@@ -281,16 +285,25 @@ LightData<Real> CompileLight(const Light& light, const Settings& settings, const
   data.falloff[0] = static_cast<Real>(point.falloff.constant);
   data.falloff[1] = static_cast<Real>(point.falloff.linear);
   data.falloff[2] = static_cast<Real>(point.falloff.quadratic);
-  if (point.cone) {
-    data.is_spot = 1;
-    Store(Unit(point.cone->direction), data.axis);
-    // cos * scale + offset is 1 at the inner angle and 0 at the outer.
-    const double inner = StrictCosDegrees(point.cone->inner);
-    const double outer = StrictCosDegrees(point.cone->outer);
-    const double scale = 1 / std::max(inner - outer, kLeastConeRim);
-    data.cone_scale = static_cast<Real>(scale);
-    data.cone_offset = static_cast<Real>(-outer * scale);
-  }
+  if (!point.cone) return;
+  data.is_spot = 1;
+  Store(Unit(point.cone->direction), data.axis);
+  // cos * scale + offset is 1 at the inner angle and 0 at the outer.
+  const double inner = StrictCosDegrees(point.cone->inner);
+  const double outer = StrictCosDegrees(point.cone->outer);
+  const double scale = 1 / std::max(inner - outer, kLeastConeRim);
+  data.cone_scale = static_cast<Real>(scale);
+  data.cone_offset = static_cast<Real>(-outer * scale);
+}
+
+template <typename Real>
+LightData<Real> CompileLight(const Light& light, const Settings& settings, const Bounds& bounds) {
+  LightData<Real> data{};
+  data.casts_shadows = light.casts_shadows;
+  Store(light.colour * (light.intensity * settings.exposure), data.rgb);
+  Match(
+      light.source, [&](const PointLight& point) { StoreSource(point, bounds, data); },
+      [&](const DirectionalLight& sun) { StoreSource(sun, bounds, data); });
   return data;
 }
 
@@ -359,12 +372,13 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
   const glm::dvec3 right = Unit(CrossOf(forward, camera.up));
   const glm::dvec3 up = CrossOf(right, forward);
   double step = 0;
-  if (const auto* perspective = std::get_if<Perspective>(&camera.projection)) {
-    step = 2 * StrictTanDegrees(perspective->fov_y / 2) / height;
-  } else {
-    data.orthographic = 1;
-    step = std::get<Orthographic>(camera.projection).height / height;
-  }
+  Match(
+      camera.projection,
+      [&](const Perspective& lens) { step = 2 * StrictTanDegrees(lens.fov_y / 2) / height; },
+      [&](const Orthographic& lens) {
+        data.orthographic = 1;
+        step = lens.height / height;
+      });
   Store(camera.eye, data.eye);
   Store(forward, data.forward);
   Store(right * step, data.right);

@@ -1,8 +1,7 @@
 #include "src/render/ray_queue.h"
 
+#include <algorithm>
 #include <type_traits>
-
-#include "simd/streams.h"
 
 namespace sheaf {
 namespace {
@@ -17,12 +16,11 @@ void Permute(T* field, const std::vector<std::uint32_t>& order, std::vector<T>& 
 }  // namespace
 
 template <typename Real>
-void ParentOrder<Real>::Apply(RayQueue<Real>& queue, std::uint32_t first,
-                              std::uint32_t parent_count) {
+void ParentOrder<Real>::Apply(const RayOutput<Real>& rays, const PathOutput<Real>& paths,
+                              std::uint32_t count, std::uint32_t parent_count) {
   constexpr std::uint32_t kNone = 0xffffffffu;
-  auto paths = queue.paths.output(first);
   ray_of_parent_.assign(parent_count, kNone);
-  for (std::uint32_t i = 0; i < queue.count - first; ++i) ray_of_parent_[paths.parent[i]] = i;
+  for (std::uint32_t i = 0; i < count; ++i) ray_of_parent_[paths.parent[i]] = i;
   order_.clear();
   for (const std::uint32_t ray : ray_of_parent_) {
     if (ray != kNone) order_.push_back(ray);
@@ -35,12 +33,35 @@ void ParentOrder<Real>::Apply(RayQueue<Real>& queue, std::uint32_t first,
       Permute(field, order_, ids_);
     }
   };
-  auto rays = queue.rays.output(first);
   ForEachField(rays, permute);
   ForEachField(paths, permute);
 }
 
+template <typename Real>
+void RayQueue<Real>::Reset(std::uint32_t n) {
+  count_ = 0;
+  if (n <= capacity_) return;
+  // Doubling keeps the number of allocations small while depths grow.
+  capacity_ = std::max(n, 2 * capacity_);
+  rays_.Allocate(capacity_);
+  paths_.Allocate(capacity_);
+}
+
+template <typename Real>
+void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ParentOrder<Real>& order) {
+  const std::uint32_t spawned = count_ - first_;
+  const PathOutput<Real> paths = paths_.output(first_);
+  // One bin leaves its rays in the order of their parents; several have to be merged into it.
+  if (bins_ > 1) order.Apply(rays_.output(first_), paths, spawned, parents.count);
+  const std::uint32_t* pixel = parents.paths.pixel;
+  for (std::uint32_t i = 0; i < spawned; ++i) {
+    paths.pixel[i] = pixel ? pixel[paths.parent[i]] : paths.parent[i];
+  }
+}
+
 template class ParentOrder<float>;
 template class ParentOrder<double>;
+template class RayQueue<float>;
+template class RayQueue<double>;
 
 }  // namespace sheaf

@@ -1,42 +1,94 @@
-// A stream of rays together with where their light goes.
+// Streams of rays together with where their light goes.
 #ifndef SHEAF_RENDER_RAY_QUEUE_H_
 #define SHEAF_RENDER_RAY_QUEUE_H_
 
+#include <cstdint>
 #include <vector>
 
+#include "simd/streams.h"
 #include "src/stream/stream.h"
 
 namespace sheaf {
 
+// Rays that pass the steps of a depth together.
 template <typename Real>
-struct RayQueue {
-  RayStream<Real> rays;
-  PathStream<Real> paths;
-  std::uint32_t count = 0, capacity = 0;
-
-  // Room for `n` rays; empties the queue.
-  void Reset(std::uint32_t n) {
-    count = 0;
-    if (n <= capacity) return;
-    // Doubling keeps the number of allocations small while depths grow.
-    capacity = n > 2 * capacity ? n : 2 * capacity;
-    rays.Allocate(capacity);
-    paths.Allocate(capacity);
-  }
+struct RayBatch {
+  RayView<Real> rays;
+  PathView<Real> paths;  // null pointers: ray i is of pixel i, with a throughput of 1
+  std::uint32_t count = 0;
 };
 
-// Brings the rays from `first` on into the order of their parents; no two share one. `parent_count`
-// bounds PathFields::parent. Batches append material by material; this makes a pixel's rays
-// independent of that.
+// A sample's primary rays: one a pixel, from no surface, so that they need no paths.
+template <typename Real>
+class PrimaryRays {
+ public:
+  // Room for `n` rays, to be written by the caller.
+  RayOutput<Real> Start(std::uint32_t n) {
+    if (n > capacity_) {
+      capacity_ = n;
+      rays_.Allocate(n);
+    }
+    count_ = n;
+    return rays_.output();
+  }
+
+  RayBatch<Real> batch() const {
+    RayView<Real> rays = rays_.view();
+    rays.source = nullptr;
+    return {rays, {}, count_};
+  }
+
+ private:
+  RayStream<Real> rays_;
+  std::uint32_t count_ = 0, capacity_ = 0;
+};
+
+// Brings rays into the order of their parents, no two of which share one.
 template <typename Real>
 class ParentOrder {
  public:
-  void Apply(RayQueue<Real>& queue, std::uint32_t first, std::uint32_t parent_count);
+  // `parent_count` bounds paths.parent.
+  void Apply(const RayOutput<Real>& rays, const PathOutput<Real>& paths, std::uint32_t count,
+             std::uint32_t parent_count);
 
  private:
   // Kept from call to call.
   std::vector<std::uint32_t> ray_of_parent_, order_, ids_;
   std::vector<Real> numbers_;
+};
+
+// The secondary rays of one depth. They are appended bin by bin, for one batch of parents after the
+// other: StartParents, then Append for each bin, then FinishParents.
+template <typename Real>
+class RayQueue {
+ public:
+  // Room for `n` rays; empties the queue.
+  void Reset(std::uint32_t n);
+
+  void StartParents() {
+    first_ = count_;
+    bins_ = 0;
+  }
+  // Where the next rays go.
+  RayOutput<Real> next_rays() { return rays_.output(count_); }
+  PathOutput<Real> next_paths() { return paths_.output(count_); }
+  // A bin's rays are written there, all but their pixels, in the order of their parents.
+  void Append(std::uint32_t spawned) {
+    count_ += spawned;
+    bins_ += spawned > 0;
+  }
+  // Gives the rays since StartParents their pixels, and the order of their parents.
+  void FinishParents(const RayBatch<Real>& parents, ParentOrder<Real>& order);
+
+  std::uint32_t count() const { return count_; }
+  RayBatch<Real> batch() const { return {rays_.view(), paths_.view(), count_}; }
+
+ private:
+  RayStream<Real> rays_;
+  PathStream<Real> paths_;
+  std::uint32_t count_ = 0, capacity_ = 0;
+  std::uint32_t first_ = 0;  // ray of the parents in work
+  int bins_ = 0;             // of the parents in work that have rays
 };
 
 }  // namespace sheaf

@@ -5,7 +5,10 @@
 #include <limits>
 
 #include "sheaf/film.h"
+#include "simd/query.h"
 #include "src/core/vec3.h"
+#include "src/stream/first_hit.h"
+#include "src/stream/frame_view.h"
 
 namespace sheaf {
 
@@ -17,9 +20,11 @@ struct FirstHitLayers {
 };
 
 template <typename Real>
-FirstHitLayers MakeLayers(Real t, Vec3<Real> normal, Vec3<Real> albedo, std::uint32_t object) {
-  return {static_cast<float>(t), normal.template To<float>(), albedo.template To<float>(),
-          static_cast<float>(object + 1)};
+FirstHitLayers LayersOf(const FirstHit<Real>& first, const FrameView<Real>& frame) {
+  if (first.primitive == kNoPrimitive) return {};
+  return {static_cast<float>(first.t), first.normal.template To<float>(),
+          first.albedo.template To<float>(),
+          static_cast<float>(frame.object_of_primitive[first.primitive] + 1)};
 }
 
 // Whether the film has any layer but that of costs.

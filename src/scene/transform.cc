@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "src/core/match.h"
 #include "src/core/strict_tan.h"
 
 namespace sheaf {
@@ -20,7 +21,16 @@ class ObjectMover {
                    glm::cross(transform.linear[0], transform.linear[1])),
         mirrors_(glm::determinant(transform.linear) < 0) {}
 
-  const char* operator()(Sphere& sphere) const {
+  // Returns what is wrong, or nothing.
+  std::string Move(Object& object) const {
+    return Match(
+        object.shape, [&](Sphere& sphere) { return Move(sphere); },
+        [&](Quad& quad) { return Move(quad); }, [&](Triangle& triangle) { return Move(triangle); },
+        [&](Mesh& mesh) { return Move(mesh); });
+  }
+
+ private:
+  const char* Move(Sphere& sphere) const {
     if (!transform_.KeepsSpheres()) {
       return "a sphere can be turned, moved and scaled alike along all axes only";
     }
@@ -28,15 +38,15 @@ class ObjectMover {
     sphere.radius *= transform_.Scale();
     return "";
   }
-  const char* operator()(Quad& quad) const {
+  const char* Move(Quad& quad) const {
     for (Vec3d& corner : quad.corners) corner = transform_.Point(corner);
     return "";
   }
-  const char* operator()(Triangle& triangle) const {
+  const char* Move(Triangle& triangle) const {
     for (Vec3d& vertex : triangle.vertices) vertex = transform_.Point(vertex);
     return "";
   }
-  const char* operator()(Mesh& mesh) const {
+  const char* Move(Mesh& mesh) const {
     for (glm::vec3& p : mesh.positions) p = glm::vec3(transform_.Point(Vec3d(p)));
     for (glm::vec3& n : mesh.normals) {
       const Vec3d normal = cofactors_ * Vec3d(n);
@@ -54,7 +64,6 @@ class ObjectMover {
     return is_finite ? "" : "a vertex is not finite after the transform";
   }
 
- private:
   const Transform& transform_;
   glm::dmat3 cofactors_;
   bool mirrors_;
@@ -99,25 +108,25 @@ Transform RotationAbout(const Vec3d& axis, double degrees) {
 std::string TransformScene(const Transform& transform, Scene* scene) {
   const ObjectMover mover(transform);
   for (Object& object : scene->objects) {
-    const std::string fault = std::visit(mover, object.shape);
+    const std::string fault = mover.Move(object);
     if (!fault.empty()) return fault;
   }
   for (Light& light : scene->lights) {
-    if (auto* point = std::get_if<PointLight>(&light.source)) {
-      point->position = transform.Point(point->position);
-      if (point->cone) point->cone->direction = transform.Vector(point->cone->direction);
-    } else {
-      auto& sun = std::get<DirectionalLight>(light.source);
-      sun.direction = transform.Vector(sun.direction);
-    }
+    Match(
+        light.source,
+        [&](PointLight& point) {
+          point.position = transform.Point(point.position);
+          if (point.cone) point.cone->direction = transform.Vector(point.cone->direction);
+        },
+        [&](DirectionalLight& sun) { sun.direction = transform.Vector(sun.direction); });
   }
   for (Camera& camera : scene->cameras) {
     camera.eye = transform.Point(camera.eye);
     camera.look_at = transform.Point(camera.look_at);
     camera.up = transform.Vector(camera.up);
-    if (auto* lens = std::get_if<Orthographic>(&camera.projection)) {
-      lens->height *= transform.Scale();
-    }
+    Match(
+        camera.projection, [](Perspective&) {},
+        [&](Orthographic& lens) { lens.height *= transform.Scale(); });
   }
   return "";
 }

@@ -1,4 +1,8 @@
 // Renders a scene through one camera: the entry point of the renderer.
+//
+// Errors are returned as values (sheaf/error.h). Where memory runs out std::bad_alloc is thrown,
+// and what a sink throws is passed on. Any number of frames may render at once, also of one scene,
+// as long as each has statistics and progress of its own and nothing changes the scene meanwhile.
 #ifndef SHEAF_SHEAF_RENDER_H_
 #define SHEAF_SHEAF_RENDER_H_
 
@@ -19,67 +23,87 @@ namespace sheaf {
 enum class Precision {
   kStrict,  // float, correctly rounded, never fused: the same bits everywhere
   kFast,    // float, fused and approximate: other bits on every target; not on the baseline
-  kDouble,  // the same renderer on double lanes
+  kDouble,  // the same renderer on double lanes: the same bits everywhere
 };
 
+// Every precision, in the order of the enumeration.
 inline constexpr Precision kPrecisions[] = {Precision::kStrict, Precision::kFast,
                                             Precision::kDouble};
-const char* PrecisionName(Precision precision);  // "strict", "fast" or "double"
 
+// "strict", "fast" or "double".
+const char* PrecisionName(Precision precision);
+
+// Whether RenderStats::phase_seconds is filled. It costs a look at the clock a phase and batch.
 enum class Timing { kOff, kOn };
 
-enum class TileCosts { kOff, kOn };
-
-// Whether work that a scene does not need is left out. It changes no bit; tests see to that.
-enum class Skips { kOn, kOff };
-
+// The largest RenderOptions::tile_size and RenderOptions::threads.
 inline constexpr int kMaxTileSize = 256;
 inline constexpr int kMaxThreads = 1024;
 
+// Where an option holds this, the scene's own setting (Settings in sheaf/scene.h) is used.
+inline constexpr int kFromScene = -1;
+
+// How a frame is rendered. As it is made it asks for the picture that the scene's settings
+// describe, on all cores.
 struct RenderOptions {
-  int width = 640, height = 480;  // of the whole picture, [1, kMaxImageSide]
-  int samples = 1;                // a pixel, >= 1
-  int max_depth = 5;              // [0, kMaxDepth]
-  // A secondary ray that adds at most this part of what it sees is not traced, [0, 1]. Above 0 it
-  // trades accuracy for time (docs/numerics.md).
+  // Of the whole picture in pixels, each in [1, kMaxImageSide], or kFromScene.
+  int width = kFromScene, height = kFromScene;
+  // A pixel, in [1, kMaxSamples], or kFromScene.
+  int samples = kFromScene;
+  // Of the rays that are traced, primary rays having depth 0: in [0, kMaxDepth], or kFromScene.
+  int max_depth = kFromScene;
+  // A secondary ray that adds at most this part of what it sees is not traced, in [0, 1]. Above 0
+  // it trades accuracy for time (docs/numerics.md).
   double min_throughput = 0;
   // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
-  // colours that differ by more than this are one, [0, 1].
+  // colours that differ by more than this are one, in [0, 1].
   std::optional<double> contrast;
-  std::optional<PixelRect> crop;  // inside the picture; the film holds the crop alone
-  Target target{};                  // what computes it; strict bits are the same on all
+  // The pixels to render, a rectangle inside the picture that is not empty. The film holds them
+  // alone; their bits are those of the whole picture.
+  std::optional<PixelRect> crop;
+  // What computes it. It never changes a bit of the picture but in fast arithmetic.
+  Target target{};
   Precision precision = Precision::kStrict;
-  int threads = 0;     // 0: one a core
-  int tile_size = 32;  // pixels a side, [1, kMaxTileSize]; never changes a bit of the picture
-  int band_rows = 0;   // of RenderRows: pixel rows a band, up to whole tiles; 0: chosen
-  Skips skips = Skips::kOn;
-  Timing timing = Timing::kOff;            // whether RenderStats::phase_seconds is filled
-  TileCosts tile_costs = TileCosts::kOff;  // whether RenderStats::tiles is
-  Layers layers;                           // of the film, besides its colours
+  // At most so many threads render, in [1, kMaxThreads]; 0: one a core that the process may use. It
+  // never changes a bit of the picture.
+  int threads = 0;
+  // Pixels a side of the squares that threads take, in [1, kMaxTileSize]. It never changes a bit of
+  // the picture.
+  int tile_size = 32;
+  // Of RenderRows: pixel rows a band, in [1, kMaxImageSide], rounded up to whole tiles; 0: chosen.
+  int band_rows = 0;
+  // Whether phases are timed.
+  Timing timing = Timing::kOff;
+  // What the film holds besides its colours.
+  Layers layers;
 };
 
-// Shared with other threads while a frame renders: read the progress, ask for a stop.
+// What a frame is at: its tree is built first, then its pixels are rendered.
 enum class RenderStage { kBuilding, kRendering };
 
+// Shared with other threads while a frame renders: they read how far it is, and may ask it to stop.
+// For one frame; it outlives the call.
 struct RenderProgress {
-  std::atomic<RenderStage> stage{RenderStage::kBuilding};  // the tree first
-  std::atomic<std::uint64_t> pixels_done{0};
-  std::atomic<bool> stop{false};
+  std::atomic<RenderStage> stage{RenderStage::kBuilding};
+  std::atomic<std::uint64_t> pixels_done{0};  // of those of the picture or crop
+  std::atomic<bool> stop{false};              // set it, and the frame ends within a pixel or so
 };
 
-// Renders `camera` (one of the scene's or any other). `stats` and `progress` may be null. Fails
-// with kUsage where an option is out of range, kInterrupted where progress->stop was set; no film
-// then.
-Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
+// Renders what `camera`, one of the scene's or any other, sees of `scene`. Returns the picture, or
+// its crop, in linear light. The scene keeps the rules of sheaf/scene.h. `stats` is overwritten,
+// `progress` read and written; both may be null. Fails with kUsage where an option is out of range,
+// with kScene where the scene has too many primitives, with kInterrupted where progress->stop was
+// set. Blocks until the frame is done or has failed.
+Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options = {},
                     RenderStats* stats = nullptr, RenderProgress* progress = nullptr);
 
 // Takes the next finished rows from the top, as wide as the picture or crop; `rows` lives as long
 // as the call. Calls come in order, one at a time, from any thread.
 using RowSink = std::function<Status(const Film& rows)>;
 
-// Renders as Render does, the same bits, in bands of rows that leave memory as they are finished:
-// it holds two bands of about 2 MiB, or a row of tiles; while one renders the sink has the other. A
-// sink that fails ends the frame: its error is returned, and progress->stop is set.
+// Renders as Render does, the same bits and errors, in bands of rows that leave memory as they are
+// finished: it holds two bands of about 2 MiB, or a row of tiles; while one renders the sink has
+// the other. A sink that fails ends the frame: its error is returned, and progress->stop is set.
 Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
                   const RowSink& sink, RenderStats* stats = nullptr,
                   RenderProgress* progress = nullptr);

@@ -1,21 +1,19 @@
-// What a frame took: rays, time by phase, use of vector lanes.
+// What a frame took: rays, time by phase, use of vector lanes. Plain values; nothing here throws.
 #ifndef SHEAF_SHEAF_STATS_H_
 #define SHEAF_SHEAF_STATS_H_
 
-#include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
-
-#include "sheaf/film.h"
 
 namespace sheaf {
 
-// Reflected and refracted rays are counted where they are spawned. Of these, `beyond_depth` are
-// deeper than the limit: black, and not traced.
+// Rays by what they are for.
 struct RayCounts {
-  std::uint64_t primary = 0, shadow = 0, reflected = 0, refracted = 0;
-  std::uint64_t beyond_depth = 0;
+  std::uint64_t primary = 0, shadow = 0;
+  std::uint64_t reflected = 0, refracted = 0;  // counted where they are spawned
+  std::uint64_t beyond_depth = 0;  // of the last two: deeper than the limit, black, not traced
+
+  // How many rays went through the tree.
   std::uint64_t traced() const { return primary + shadow + reflected + refracted - beyond_depth; }
   RayCounts& operator+=(const RayCounts& other) {
     primary += other.primary;
@@ -27,22 +25,27 @@ struct RayCounts {
   }
 };
 
+// The steps of a tile (docs/data-path.md), some of them together.
 enum class Phase {
-  kGenerate,
-  kTrace,
-  kBin,
-  kSurface,
-  kShade,
-  kShadow,
-  kSpawn,
-  kAccumulate,
+  kGenerate,    // primary rays
+  kTrace,       // nearest hits
+  kBin,         // hits by material
+  kSurface,     // points, normals, textures
+  kShade,       // ambient light and what the lights add
+  kShadow,      // shadow rays, made and traced
+  kSpawn,       // reflected and refracted rays
+  kAccumulate,  // colours into samples, pixels and film
   kCount
 };
-const char* PhaseName(Phase phase);  // lower case, e.g. "trace"
+
+// Lower case: "generate", "trace", "bin", "surface", "shade", "shadow", "spawn", "accumulate".
+const char* PhaseName(Phase phase);
 
 // How full the vectors of a phase's kernels were: of `lanes` that ran, `live` had something to do.
 struct LaneUse {
-  std::uint64_t batches = 0, live = 0, lanes = 0;
+  std::uint64_t batches = 0;  // kernel calls
+  std::uint64_t live = 0, lanes = 0;
+
   LaneUse& operator+=(const LaneUse& other) {
     batches += other.batches;
     live += other.live;
@@ -51,29 +54,18 @@ struct LaneUse {
   }
 };
 
-// What one tile took.
-struct TileCost {
-  PixelRect tile;  // in picture coordinates
-  std::uint64_t rays = 0;
-  LaneUse lane_use;  // of all phases; not of the baseline
-  double seconds = 0;
-};
-
-// Microseconds a pixel, the share of live lanes, rays a pixel: Layer::kHeat of its pixels.
-std::array<float, 3> HeatOf(const TileCost& cost);
-
+// What Render and RenderRows tell of a frame.
 struct RenderStats {
   RayCounts rays;
   double wall_seconds = 0.0;     // of the frame, without compilation and without waits for a sink
-  double compile_seconds = 0.0;  // Scene to flat arrays
-  double phase_seconds[static_cast<int>(Phase::kCount)] =
-      {};  // summed over threads; not of the baseline
-  LaneUse lane_use[static_cast<int>(Phase::kCount)] =
-      {};                       // summed over threads; not of the baseline
-  std::vector<TileCost> tiles;  // thread by thread
-  int threads = 0;              // that took part
-  std::string target;           // what ran: "scalar" or a SIMD target's name
-  std::uint32_t primitives = 0, spheres = 0, triangles = 0;
+  double compile_seconds = 0.0;  // from the scene to flat arrays and a tree
+  // By Phase, summed over threads; not of the baseline. Seconds are measured where
+  // RenderOptions::timing asks for it.
+  double phase_seconds[static_cast<int>(Phase::kCount)] = {};
+  LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};
+  int threads = 0;     // that took part
+  std::string target;  // what ran: "scalar" or a SIMD target's name
+  std::uint32_t primitives = 0, spheres = 0, triangles = 0;  // a quad is two triangles
 };
 
 }  // namespace sheaf

@@ -1,0 +1,41 @@
+#include "src/render/find_surfaces.h"
+
+#include "simd/shading.h"
+#include "src/render/tint_surfaces.h"
+
+namespace sheaf {
+
+template <typename Real>
+SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels,
+                               const HitBin& bin, const RayView<Real>& rays,
+                               const HitView<Real>& hits, SurfaceStream<Real>& surfaces) {
+  const MaterialData<Real>& material = frame.materials[bin.material];
+  const SurfaceOutput<Real> output = surfaces.output();
+  bool has_faces = false;
+  switch (bin.shape) {
+    case ShapeKind::kSphere:
+      kernels.sphere_surfaces(frame.geometry.spheres, rays, hits, bin.batch, material.needs,
+                              output);
+      break;
+    case ShapeKind::kTriangle:
+      kernels.triangle_surfaces(frame.geometry.triangles, rays, hits, bin.batch, material.needs,
+                                output);
+      if (material.needs & (kNeedsNormals | kNeedsTint)) {
+        kernels.blend_vertices(frame.geometry.triangles, hits, bin.batch, material.needs, output);
+      }
+      has_faces = (material.needs & kNeedsNormals) != 0;
+      break;
+  }
+  const auto view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
+  if (material.needs & kNeedsTint) TintSurfaces(material, frame.textures, bin, view, output);
+  return view;
+}
+
+template SurfaceView<float> FindSurfaces(const FrameView<float>&, const Kernels<float>&,
+                                         const HitBin&, const RayView<float>&,
+                                         const HitView<float>&, SurfaceStream<float>&);
+template SurfaceView<double> FindSurfaces(const FrameView<double>&, const Kernels<double>&,
+                                          const HitBin&, const RayView<double>&,
+                                          const HitView<double>&, SurfaceStream<double>&);
+
+}  // namespace sheaf

@@ -1,0 +1,131 @@
+#include "src/render/render_frame.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "simd/shading.h"
+#include "simd/tree.h"
+#include "src/bvh/build_tree.h"
+#include "src/core/match.h"
+#include "src/core/running_target.h"
+#include "src/render/check_options.h"
+#include "src/render/compile_scene.h"
+#include "src/render/render_bands.h"
+#include "src/render/sample_pattern.h"
+#include "src/render/scalar_tile_renderer.h"
+#include "src/render/tile_renderer.h"
+
+namespace sheaf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::uint64_t TriangleCount(const Scene& scene) {
+  std::uint64_t count = 0;
+  for (const Object& object : scene.objects) {
+    count += Match(
+        object.shape, [](const Sphere&) { return std::size_t{0}; },
+        [](const Quad&) { return std::size_t{2}; }, [](const Triangle&) { return std::size_t{1}; },
+        [](const Mesh& mesh) { return mesh.triangles.size(); });
+  }
+  return count;
+}
+
+// What a frame's rays read, and what owns it.
+template <typename Real>
+struct CompiledFrame {
+  CompiledScene<Real> scene;
+  Tree<Real> tree;
+  std::vector<Real> sample_x, sample_y;
+  FrameView<Real> view;
+};
+
+template <typename Real>
+Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, const Camera& camera,
+                                                          const RenderOptions& options,
+                                                          Skips skips) {
+  if (TriangleCount(scene) > kMaxTreePrimitives) {
+    return Error{ErrorKind::kScene, fmt::format("{} triangles, at most {} are possible",
+                                                TriangleCount(scene), kMaxTreePrimitives)};
+  }
+  auto frame = std::make_unique<CompiledFrame<Real>>();
+  CompiledScene<Real>& compiled = frame->scene;
+  compiled = CompileScene<Real>(scene);
+  if (skips == Skips::kOff) {
+    for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
+  }
+  Result<Tree<Real>> tree = BuildTree<Real>(compiled.geometry(), options.threads);
+  if (!tree) return Error{ErrorKind::kScene, tree.error().message};
+  frame->tree = std::move(tree).value();
+  for (const glm::dvec2& point : SamplePattern(options.samples)) {
+    frame->sample_x.push_back(static_cast<Real>(point.x));
+    frame->sample_y.push_back(static_cast<Real>(point.y));
+  }
+  frame->view = {compiled.geometry(),
+                 frame->tree.view(),
+                 compiled.primitives,
+                 compiled.object_of_primitive,
+                 compiled.materials,
+                 compiled.textures,
+                 compiled.lights,
+                 frame->sample_x,
+                 frame->sample_y,
+                 CompileCamera<Real>(camera, options.width, options.height),
+                 {compiled.background[0], compiled.background[1], compiled.background[2]},
+                 options.max_depth,
+                 options.width,
+                 options.height,
+                 static_cast<Real>(options.contrast.value_or(std::nan(""))),
+                 static_cast<Real>(options.min_throughput)};
+  if (skips == Skips::kOff) {
+    frame->view.tree.skips_boxes = frame->view.tree.node_count == 0;
+  }
+  return frame;
+}
+
+template <typename Real>
+Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& options, Skips skips,
+                const BandSink& sink, RenderStats& stats, RenderProgress& progress) {
+  const Clock::time_point start = Clock::now();
+  const auto compiled = CompileFrame<Real>(scene, camera, options, skips);
+  if (!compiled) return compiled.error();
+  const CompiledScene<Real>& counted = compiled.value()->scene;
+  stats.compile_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
+  stats.spheres = counted.sphere_count;
+  stats.triangles = counted.triangle_count;
+  stats.primitives = counted.sphere_count + counted.triangle_count;
+  stats.target = RunningTarget(options.target);
+
+  const FrameView<Real>& frame = compiled.value()->view;
+  const auto make_worker = [&]() -> std::unique_ptr<TileWorker> {
+    if (options.target.is_scalar()) {
+      return std::make_unique<ScalarTileRenderer<Real>>(frame, progress.stop);
+    }
+    return std::make_unique<TileRenderer<Real>>(frame, options, progress.stop);
+  };
+  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+  return RenderBands(area, options, make_worker, sink, stats, progress);
+}
+
+}  // namespace
+
+Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                   Skips skips, const BandSink& sink, RenderStats* stats,
+                   RenderProgress* progress) {
+  const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
+  if (!checked) return checked.error();
+  RenderStats ignored_stats;
+  RenderProgress ignored_progress;
+  RenderStats& kept_stats = stats ? *stats : ignored_stats;
+  RenderProgress& kept_progress = progress ? *progress : ignored_progress;
+  kept_stats = {};
+  const auto render = options.precision == Precision::kDouble ? RenderIn<double> : RenderIn<float>;
+  return render(scene, camera, checked.value(), skips, sink, kept_stats, kept_progress);
+}
+
+}  // namespace sheaf

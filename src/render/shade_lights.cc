@@ -1,0 +1,57 @@
+#include "src/render/shade_lights.h"
+
+#include <algorithm>
+
+#include "simd/query.h"
+
+namespace sheaf {
+
+template <typename Real>
+void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                              std::uint32_t count, const ColourOutput<Real>& colours) {
+  Reserve(count);
+  for (const LightData<Real>& light : frame_.lights) {
+    const std::uint32_t facing = kernels_.face_light(light, material, surfaces, count, lit_.data());
+    clock_.Charge(Phase::kShade, count, count);
+    if (facing == 0) continue;
+    const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
+    if (lit == 0) continue;
+    kernels_.shade_light(light, material, surfaces, lit_.data(), count, colours);
+    clock_.Charge(Phase::kShade, lit, count);
+  }
+}
+
+template <typename Real>
+std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
+                                             const SurfaceView<Real>& surfaces,
+                                             std::uint32_t count) {
+  const std::uint32_t size = kernels_.generate_shadow(
+      light, surfaces, lit_.data(), count, shadow_rays_.output(), surface_of_ray_.data());
+  rays_.shadow += size;
+  RayIntervals<Real> intervals;
+  if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
+  kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
+                          occluded_.data());
+  std::uint32_t lit = size;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    lit_[surface_of_ray_[i]] = 1 - occluded_[i];
+    lit -= occluded_[i];
+  }
+  clock_.Charge(Phase::kShadow, size, size);
+  return lit;
+}
+
+template <typename Real>
+void LightShader<Real>::Reserve(std::uint32_t count) {
+  if (count <= capacity_) return;
+  capacity_ = std::max(count, 2 * capacity_);
+  lit_.Allocate(StreamCapacity(capacity_));
+  shadow_rays_.Allocate(capacity_);
+  surface_of_ray_.Allocate(StreamCapacity(capacity_));
+  occluded_.Allocate(StreamCapacity(capacity_));
+}
+
+template class LightShader<float>;
+template class LightShader<double>;
+
+}  // namespace sheaf

@@ -1,0 +1,50 @@
+// The step from surfaces to what the lights add to them: light by light, so that the shadow rays of
+// a batch share their origin.
+#ifndef SHEAF_RENDER_SHADE_LIGHTS_H_
+#define SHEAF_RENDER_SHADE_LIGHTS_H_
+
+#include <cstdint>
+
+#include "sheaf/stats.h"
+#include "simd/kernels.h"
+#include "simd/shading.h"
+#include "simd/streams.h"
+#include "src/core/aligned_array.h"
+#include "src/render/phase_clock.h"
+#include "src/stream/frame_view.h"
+#include "src/stream/stream.h"
+
+namespace sheaf {
+
+// Owns the streams of shadow rays. What it is made with outlives it.
+template <typename Real>
+class LightShader {
+ public:
+  LightShader(const FrameView<Real>& frame, const Kernels<Real>& kernels, RayCounts& rays,
+              PhaseClock& clock)
+      : frame_(frame), kernels_(kernels), rays_(rays), clock_(clock) {}
+
+  // Adds to colours[0, count) what each light gives the surfaces that it reaches.
+  void Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+             std::uint32_t count, const ColourOutput<Real>& colours);
+
+ private:
+  // Returns how many surfaces the light reaches.
+  std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
+                            std::uint32_t count);
+  void Reserve(std::uint32_t count);
+
+  const FrameView<Real>& frame_;
+  const Kernels<Real>& kernels_;
+  RayCounts& rays_;
+  PhaseClock& clock_;
+
+  std::uint32_t capacity_ = 0;
+  AlignedArray<std::uint32_t> lit_;  // by surface: 1 where the light in work reaches it
+  RayStream<Real> shadow_rays_;
+  AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_RENDER_SHADE_LIGHTS_H_
