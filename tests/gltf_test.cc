@@ -6,6 +6,7 @@
 #include <string>
 
 #include "model_files.h"
+#include "same_bits.h"
 
 namespace sheaf {
 namespace {

@@ -108,7 +108,7 @@ TEST_CASE("layers have the same bits on every target") {
   for (const bool is_adaptive : {false, true}) {
     options.samples = is_adaptive ? 4 : 1;
     if (is_adaptive) options.contrast = 0.1;
-    options.engine = Engine::kScalar;
+    options.target = Target::Scalar();
     const Film want = RenderOrFail(scene, camera, options);
     int hits = 0;
     for (std::size_t i = 0; i < want.pixel_count(); ++i) {
@@ -119,8 +119,8 @@ TEST_CASE("layers have the same bits on every target") {
       hits += id > 0;
     }
     CHECK(hits > 500);
-    options.engine = Engine::kSimd;
-    ForEachTarget([&](const std::string&) {
+    ForEachTarget([&](Target target) {
+      options.target = target;
       const Film got = RenderOrFail(scene, camera, options);
       for (int i = 0; i < kLayerCount; ++i) {
         REQUIRE(got.layers[i].size() == want.layers[i].size());

@@ -2,6 +2,7 @@
 #include "src/formats/scene_json.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
