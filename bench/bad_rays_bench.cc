@@ -15,7 +15,7 @@
 #include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "src/bvh/geometry.h"
+#include "src/bvh/geometry_access.h"
 #include "src/core/running_target.h"
 
 namespace sheaf::bench {
@@ -68,10 +68,10 @@ void TraceRays(benchmark::State& state, const Geometry& geometry, const RayBatch
   std::vector<std::uint32_t> primitive(batch.count);
   for (auto _ : state) {
     if (query == Query::kClosest) {
-      TraceClosest(geometry, batch.view(), batch.count,
+      TraceClosest(geometry, ArraysOf(batch.view()), batch.count,
                    {.t = t.data(), .primitive = primitive.data()}, options);
     } else {
-      TraceOccluded(geometry, batch.view(), batch.count, primitive.data(), options);
+      TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, primitive.data(), options);
     }
     benchmark::DoNotOptimize(primitive.data());
   }

@@ -11,54 +11,11 @@
 #include "simd/streams.h"
 #include "simd/tree.h"
 #include "src/bvh/build_tree.h"
-#include "src/bvh/geometry.h"
+#include "src/bvh/geometry_access.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf::bench {
 namespace {
-
-// A scene as BuildTree reads it.
-class SceneArrays {
- public:
-  explicit SceneArrays(const BenchScene& scene) {
-    const std::uint32_t triangles = scene.triangle_count(), spheres = scene.sphere_count();
-    for (AlignedArray<float>& field : triangle_fields_) field.Allocate(StreamCapacity(triangles));
-    for (AlignedArray<float>& field : sphere_fields_) field.Allocate(StreamCapacity(spheres));
-    triangle_id_.Allocate(StreamCapacity(triangles));
-    sphere_id_.Allocate(StreamCapacity(spheres));
-    for (std::uint32_t i = 0; i < triangles; ++i) {
-      triangle_id_[i] = i;
-      for (std::uint32_t k = 0; k < 9; ++k) {
-        const std::size_t vertex = scene.indices[std::size_t{3} * i + k / 3];
-        triangle_fields_[k][i] = scene.vertices[3 * vertex + k % 3];
-      }
-    }
-    for (std::uint32_t i = 0; i < spheres; ++i) {
-      sphere_id_[i] = triangles + i;
-      for (std::uint32_t k = 0; k < 4; ++k) {
-        sphere_fields_[k][i] = scene.spheres[std::size_t{4} * i + k];
-      }
-    }
-    view_.triangles.count = triangles;
-    for (int k = 0; k < 9; ++k) view_.triangles.vertex[k / 3][k % 3] = triangle_fields_[k].data();
-    view_.triangles.id = triangle_id_.data();
-    view_.spheres = {spheres,
-                     sphere_fields_[0].data(),
-                     sphere_fields_[1].data(),
-                     sphere_fields_[2].data(),
-                     sphere_fields_[3].data(),
-                     sphere_id_.data()};
-  }
-  SceneArrays(const SceneArrays&) = delete;
-  SceneArrays& operator=(const SceneArrays&) = delete;
-
-  const GeometryView<float>& view() const { return view_; }
-
- private:
-  AlignedArray<float> triangle_fields_[9], sphere_fields_[4];
-  AlignedArray<std::uint32_t> triangle_id_, sphere_id_;
-  GeometryView<float> view_{};
-};
 
 template <typename T>
 const T& ValueOrExit(const Result<T>& result) {
@@ -72,10 +29,11 @@ const T& ValueOrExit(const Result<T>& result) {
 }  // namespace
 
 BuildComparison CompareBuilds(const BenchScene& scene, int repetitions) {
-  const SceneArrays arrays(scene);
   GeometryInput input;
   if (scene.triangle_count() > 0) input.AddTriangles(scene.vertices, scene.indices);
   if (scene.sphere_count() > 0) input.AddSpheres(scene.spheres);
+  const Result<FlatInput> flat = GeometryAccess::Flatten(input, 1);
+  const GeometryView<float> arrays = ValueOrExit(flat).arrays.view();
 
   BuildComparison comparison{};
   comparison.scene = scene.name;
@@ -107,8 +65,8 @@ BuildComparison CompareBuilds(const BenchScene& scene, int repetitions) {
                                  Geometry::Build(input, threads));
                            }});
     contestants.push_back({clear, [&, threads] {
-                             tree = std::make_unique<Result<Tree<float>>>(
-                                 BuildTree(arrays.view(), threads));
+                             tree =
+                                 std::make_unique<Result<Tree<float>>>(BuildTree(arrays, threads));
                            }});
   }
   Interleave(contestants, 1);  // pages touched, threads started
@@ -126,7 +84,7 @@ BuildComparison CompareBuilds(const BenchScene& scene, int repetitions) {
   const Result<Geometry> built = Geometry::Build(input, 1);
   comparison.sheaf_bytes_a_primitive =
       static_cast<double>(ValueOrExit(built).statistics().bytes) / n;
-  ValueOrExit(BuildTree(arrays.view(), 1));
+  ValueOrExit(BuildTree(arrays, 1));
   return comparison;
 }
 

@@ -28,17 +28,17 @@ Query QueryOf(RayKind kind) {
   return kind == RayKind::kShadow ? Query::kOccluded : Query::kClosest;
 }
 
-Coherence CoherenceOf(RayKind kind) {
+RayCoherence CoherenceOf(RayKind kind) {
   switch (kind) {
     case RayKind::kPrimary:
     case RayKind::kShadow:
-      return Coherence::kCommonOrigin;
+      return RayCoherence::kCommonOrigin;
     case RayKind::kMirror:
-      return Coherence::kUnknown;
+      return RayCoherence::kUnknown;
     case RayKind::kDiffuse:
-      return Coherence::kIncoherent;
+      return RayCoherence::kIncoherent;
   }
-  return Coherence::kUnknown;
+  return RayCoherence::kUnknown;
 }
 
 // What a tracer answers. Of shadow rays, `primitive` is 0 where something was hit.
@@ -52,14 +52,14 @@ struct Answers {
 void TraceSheaf(const Geometry& geometry, const RayBatch& batch, Query query,
                 const TraceOptions& options, Answers& answers) {
   if (query == Query::kClosest) {
-    TraceClosest(geometry, batch.view(), batch.count,
+    TraceClosest(geometry, ArraysOf(batch.view()), batch.count,
                  {.t = answers.t.data(),
                   .primitive = answers.primitive.data(),
                   .u = answers.u.data(),
                   .v = answers.v.data()},
                  options);
   } else {
-    TraceOccluded(geometry, batch.view(), batch.count, answers.primitive.data(), options);
+    TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, answers.primitive.data(), options);
   }
 }
 
@@ -218,7 +218,7 @@ Comparison CompareKind(const BenchScene& scene, const Geometry& geometry, Embree
   std::array<EmbreeMethod, 2> methods = embree.FindBest(kind);
 
   TraceOptions trace_options;
-  trace_options.intervals = batch.intervals;
+  trace_options.interval = IntervalOf(batch.intervals);
   if (options.hints == Hints::kGiven) trace_options.coherence = CoherenceOf(kind);
   std::vector<Answers> answers(options.targets.size(), Answers(batch.count));
   Answers scalar_answers(batch.count);
@@ -239,8 +239,9 @@ Comparison CompareKind(const BenchScene& scene, const Geometry& geometry, Embree
         {[&] { flush.reset(); },
          [&, i, on_target] { TraceSheaf(geometry, batch, query, on_target, answers[i]); }});
   }
-  contestants.push_back({[&] { flush.reset(); },
-                         [&] { TraceScalar(geometry.tree(), batch, query, scalar_answers); }});
+  contestants.push_back(
+      {[&] { flush.reset(); },
+       [&] { TraceScalar(GeometryAccess::TreeOf(geometry), batch, query, scalar_answers); }});
   const auto seconds = Interleave(contestants, options.repetitions);
   flush.reset();
 

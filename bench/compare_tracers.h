@@ -10,7 +10,7 @@
 #include "bench/embree_peer.h"
 #include "bench/make_rays.h"
 #include "bench/make_scenes.h"
-#include "src/bvh/geometry.h"
+#include "src/bvh/geometry_access.h"
 
 namespace sheaf::bench {
 

@@ -19,7 +19,7 @@
 #include "sheaf/target.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "src/bvh/geometry.h"
+#include "src/bvh/geometry_access.h"
 #include "src/core/parallel.h"
 #include "src/core/running_target.h"
 #include "src/core/vec3.h"
@@ -140,17 +140,17 @@ bool IsLeak(std::uint32_t primitive, float t) {
 
 void CountSheaf(const Geometry& geometry, Target target, const RayBatch& batch,
                 std::uint64_t number, Leaks& leaks) {
-  constexpr Coherence kCoherences[] = {Coherence::kUnknown, Coherence::kCommonOrigin,
-                                       Coherence::kCoherent, Coherence::kIncoherent};
+  constexpr RayCoherence kCoherences[] = {RayCoherence::kUnknown, RayCoherence::kCommonOrigin,
+                                          RayCoherence::kCoherent, RayCoherence::kIncoherent};
   TraceOptions options;
   options.target = target;
   options.coherence = kCoherences[number / 3 % 4];
   std::vector<float> t(batch.count);
   std::vector<std::uint32_t> primitive(batch.count), occluded(batch.count);
-  TraceClosest(geometry, batch.view(), batch.count, {.t = t.data(), .primitive = primitive.data()},
-               options);
-  options.intervals = AroundTarget();
-  TraceOccluded(geometry, batch.view(), batch.count, occluded.data(), options);
+  TraceClosest(geometry, ArraysOf(batch.view()), batch.count,
+               {.t = t.data(), .primitive = primitive.data()}, options);
+  options.interval = IntervalOf(AroundTarget());
+  TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, occluded.data(), options);
   for (std::uint32_t i = 0; i < batch.count; ++i) {
     leaks.closest += IsLeak(primitive[i], t[i]);
     leaks.occluded += occluded[i] == 0;

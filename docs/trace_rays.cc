@@ -1,8 +1,8 @@
 // Traces 64 x 64 rays at a square and a sphere in front of it, and prints what they hit.
+#include <sheaf/geometry.h>
+
 #include <cstdio>
 #include <vector>
-
-#include "src/bvh/geometry.h"
 
 int main() {
   const std::vector<float> corners = {-2, -2, -6, 2, -2, -6, 2, 2, -6, -2, 2, -6};  // x, y, z
@@ -21,8 +21,8 @@ int main() {
     x[i] = (static_cast<float>(i % 64) - 31.5f) / 64;
     y[i] = (static_cast<float>(i / 64) - 31.5f) / 64;
   }
-  const sheaf::RayView<float> rays = {zero.data(), zero.data(), zero.data(), x.data(),
-                                      y.data(),    z.data(),    nullptr};
+  const sheaf::RayArrays rays = {zero.data(), zero.data(), zero.data(),
+                                 x.data(),    y.data(),    z.data()};
   sheaf::TraceClosest(geometry.value(), rays, kCount, {.t = t.data(), .object = object.data()});
 
   std::uint32_t hits[2] = {0, 0};

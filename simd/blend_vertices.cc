@@ -25,22 +25,22 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     // Lanes past the count gather element 0.
     const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
-    const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
+    const auto index = hn::IfThenElseZero(lanes, LoadIds(dn, batch.index + i));
     const std::uint32_t wanted = batch.count - i;
     const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
-    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
+    const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(dn), wanted);
     const auto of_ray = [&](const Real* array) HWY_ATTR {
       return Widen(Fetch(dn, ray_pattern, array, batch.ray[i], ray));
     };
-    const auto of_local = [&](const Real* array) HWY_ATTR {
-      return Widen(Fetch(dn, local_pattern, array, batch.local[i], local));
+    const auto of_primitive = [&](const Real* array) HWY_ATTR {
+      return Widen(Fetch(dn, index_pattern, array, batch.index[i], index));
     };
     const W w1 = of_ray(hits.u), w2 = of_ray(hits.v);
     const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
     const auto mean = [&](const Real* const(&values)[3][3], int axis) HWY_ATTR {
-      return hn::Add(
-          hn::Add(hn::Mul(of_local(values[0][axis]), w0), hn::Mul(of_local(values[1][axis]), w1)),
-          hn::Mul(of_local(values[2][axis]), w2));
+      return hn::Add(hn::Add(hn::Mul(of_primitive(values[0][axis]), w0),
+                             hn::Mul(of_primitive(values[1][axis]), w1)),
+                     hn::Mul(of_primitive(values[2][axis]), w2));
     };
     if (needs & kNeedsNormals) {
       const auto face_x = hn::LoadU(dn, surfaces.normal_x + i);
@@ -69,9 +69,9 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     if (needs & kNeedsTint) {
       const auto tint = [&](int channel) HWY_ATTR {
         if (!has_colours) return hn::Set(dn, Real(1));
-        const W colour = of_local(triangles.colour[0][channel]);
-        const W along1 = hn::Sub(of_local(triangles.colour[1][channel]), colour);
-        const W along2 = hn::Sub(of_local(triangles.colour[2][channel]), colour);
+        const W colour = of_primitive(triangles.colour[0][channel]);
+        const W along1 = hn::Sub(of_primitive(triangles.colour[1][channel]), colour);
+        const W along2 = hn::Sub(of_primitive(triangles.colour[2][channel]), colour);
         return Narrow<Real>(hn::Add(hn::Add(colour, hn::Mul(along1, w1)), hn::Mul(along2, w2)));
       };
       hn::StoreU(tint(0), dn, surfaces.tint_r + i);

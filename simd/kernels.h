@@ -10,28 +10,25 @@
 #include "simd/shade_ambient.h"
 #include "simd/shade_light.h"
 #include "simd/spawn_rays.h"
-#include "simd/sphere_surface.h"
+#include "simd/surfaces.h"
 #include "simd/target.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
-#include "simd/triangle_surface.h"
 
-// The one list of kernels, each by name and by field of the table. These gain nothing by fast
-// arithmetic, and are compiled once.
-#define SHEAF_STRICT_KERNELS(X)          \
-  X(ReportTarget, report_target)         \
-  X(GeneratePrimary, generate_primary)   \
-  X(TriangleSurfaces, triangle_surfaces) \
-  X(BlendVertices, blend_vertices)       \
-  X(ShadeAmbient, shade_ambient)         \
-  X(FaceLight, face_light)               \
+// The one list of kernels but for those of simd/surfaces.h, each by name and by field of the table.
+// These gain nothing by fast arithmetic, and are compiled once.
+#define SHEAF_STRICT_KERNELS(X)        \
+  X(ReportTarget, report_target)       \
+  X(GeneratePrimary, generate_primary) \
+  X(BlendVertices, blend_vertices)     \
+  X(ShadeAmbient, shade_ambient)       \
+  X(FaceLight, face_light)             \
   X(GenerateShadow, generate_shadow)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).
-#define SHEAF_FAST_KERNELS(X)        \
-  X(TraceClosest, trace_closest)     \
-  X(TraceOccluded, trace_occluded)   \
-  X(SphereSurfaces, sphere_surfaces) \
-  X(ShadeLight, shade_light)         \
+#define SHEAF_FAST_KERNELS(X)      \
+  X(TraceClosest, trace_closest)   \
+  X(TraceOccluded, trace_occluded) \
+  X(ShadeLight, shade_light)       \
   X(SpawnRays, spawn_rays)
 
 namespace sheaf {
@@ -43,6 +40,9 @@ struct Kernels {
   SHEAF_STRICT_KERNELS(SHEAF_FIELD)
   SHEAF_FAST_KERNELS(SHEAF_FIELD)
 #undef SHEAF_FIELD
+  SurfacesKernel<Real>* surfaces[kKindCount];  // by kind
+
+  SurfacesKernel<Real>* surfaces_of(PrimitiveKind kind) const { return surfaces[IndexOf(kind)]; }
 };
 
 // `target` is a bit of simd::UsableTargets(), or 0 for the best.

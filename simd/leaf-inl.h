@@ -25,13 +25,25 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 template <typename Real>
 using LeafLanes = hn::CappedTag<Real, kMaxLeafSize>;
 
-template <typename Real>
-HWY_INLINE const Real* TriangleBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
-  return tree.triangles + std::size_t{9} * LeafFirst(leaf);
+// The fields of a leaf's block, and the ids of its primitives. kKind is the leaf's.
+template <PrimitiveKind kKind, typename Real>
+HWY_INLINE const Real* BlockOf(const TreeView<Real>& tree, std::uint32_t leaf) {
+  return tree.of(kKind).fields + std::size_t{FieldCountOf(kKind)} * LeafFirst(leaf);
 }
+template <PrimitiveKind kKind, typename Real>
+HWY_INLINE const std::uint32_t* IdsOf(const TreeView<Real>& tree, std::uint32_t leaf) {
+  return tree.of(kKind).id + LeafFirst(leaf);
+}
+
+// The same where the kind is not known.
 template <typename Real>
-HWY_INLINE const Real* SphereBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
-  return tree.spheres + std::size_t{4} * LeafFirst(leaf);
+HWY_INLINE const Real* BlockOf(const TreeView<Real>& tree, std::uint32_t leaf) {
+  const PrimitiveKind kind = LeafKind(leaf);
+  return tree.of(kind).fields + std::size_t{FieldCountOf(kind)} * LeafFirst(leaf);
+}
+
+HWY_INLINE bool HasTriangles(std::uint32_t leaf) {
+  return LeafKind(leaf) == PrimitiveKind::kTriangle;
 }
 
 // ---- A packet ----
@@ -101,27 +113,30 @@ HWY_NOINLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* blo
       {{packet.direction[0], 1}, {packet.direction[1], 1}, {packet.direction[2], 1}},
       {{block + i, 0}, {block + n + i, 0}, {block + 2 * n + i, 0}},
       {block + 3 * n + i, 0}};
-  V t, u, v;
-  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, u, v);
+  V t, leaves, t_rest;
+  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, leaves, t_rest);
   if (hn::AllFalse(d, hit)) return;
-  KeepHits<kQuery>(d, packet, hit, t, u, v, ids);
+  KeepHits<kQuery>(d, packet, hit, t, leaves, t_rest, ids);
 }
 
-// Primitives of the leaf whose bits are set in `wanted`.
 template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
-HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
-                                    std::uint32_t wanted, Packet<Real>& packet, M lanes) {
-  const std::uint32_t n = LeafCount(leaf), first = LeafFirst(leaf);
-  if (!IsTriangleLeaf(leaf)) {
-    const Real* block = SphereBlock(tree, leaf);
-    for (; wanted != 0; wanted &= wanted - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
-      SphereAgainstPacket<kQuery>(d, packet, block, n, i, tree.sphere_id[first + i], lanes);
-    }
-    return;
+HWY_INLINE void SpheresAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                     std::uint32_t wanted, Packet<Real>& packet, M lanes) {
+  const Real* block = BlockOf<PrimitiveKind::kSphere>(tree, leaf);
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kSphere>(tree, leaf);
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
+    SphereAgainstPacket<kQuery>(d, packet, block, LeafCount(leaf), i, ids[i], lanes);
   }
+}
+
+template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
+HWY_INLINE void TrianglesAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                       std::uint32_t wanted, Packet<Real>& packet, M lanes) {
   // A packet's rays mostly share their dominant axis; where they do not, each axis takes its lanes.
-  const Real* block = TriangleBlock(tree, leaf);
+  const std::uint32_t n = LeafCount(leaf);
+  const Real* block = BlockOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, leaf);
   const IdLanes<D> di;
   const auto axes = LoadIds(d, packet.axis);
   for (int axis = 0; axis < 3; ++axis) {
@@ -143,8 +158,20 @@ HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32
         return hn::Sub(hn::Set(d, block[(3 * vertex + axis) * n + i]), oz);
       };
       TriangleAgainstPacket<kQuery>(d, packet, axis, x(0), y(0), z(0), x(1), y(1), z(1), x(2), y(2),
-                                    z(2), tree.triangle_id[first + i], along);
+                                    z(2), ids[i], along);
     }
+  }
+}
+
+// Primitives of the leaf whose bits are set in `wanted`.
+template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
+HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                    std::uint32_t wanted, Packet<Real>& packet, M lanes) {
+  switch (LeafKind(leaf)) {
+    case PrimitiveKind::kTriangle:
+      return TrianglesAgainstPacket<kQuery>(d, tree, leaf, wanted, packet, lanes);
+    case PrimitiveKind::kSphere:
+      return SpheresAgainstPacket<kQuery>(d, tree, leaf, wanted, packet, lanes);
   }
 }
 
@@ -162,56 +189,64 @@ HWY_INLINE void KeepHit(Packet<Real>& packet, std::uint32_t lane, Real t, Real u
 }
 
 template <Query kQuery, typename Real>
-HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, Packet<Real>& packet,
-                               std::uint32_t lane) {
+HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
+                                    Packet<Real>& packet, std::uint32_t lane) {
   const LeafLanes<Real> d;
   using V = hn::Vec<LeafLanes<Real>>;
-  const IdLanes<LeafLanes<Real>> di;
-  using Id = hn::TFromD<decltype(di)>;
-  const std::uint32_t n = LeafCount(leaf), first = LeafFirst(leaf);
+  const std::uint32_t n = LeafCount(leaf), source = packet.source[lane];
   alignas(kAlignment) Real ts[kMaxLeafSize], us[kMaxLeafSize], vs[kMaxLeafSize];
   alignas(kAlignment) Real dets[kMaxLeafSize];
   const auto t_min = hn::Set(d, packet.t_min[lane]);
-  const std::uint32_t source = packet.source[lane];
-  if (IsTriangleLeaf(leaf)) {
-    const std::size_t kz = packet.axis[lane], kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
-    const Real* block = TriangleBlock(tree, leaf);
-    const Real *xs = block + kx * n, *ys = block + ky * n, *zs = block + kz * n;
-    const std::size_t next = std::size_t{3} * n;  // from a vertex to the next
-    const auto ox = hn::Set(d, packet.origin[kx][lane]), oy = hn::Set(d, packet.origin[ky][lane]),
-               oz = hn::Set(d, packet.origin[kz][lane]);
-    for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
-      const auto relative = [&](const Real* at, V o)
-                                SHEAF_LAMBDA { return hn::Sub(hn::LoadU(d, at + i), o); };
-      V t, v, w, det;
-      const auto inside = HitTriangle(
-          d, relative(xs, ox), relative(ys, oy), relative(zs, oz), relative(xs + next, ox),
-          relative(ys + next, oy), relative(zs + next, oz), relative(xs + 2 * next, ox),
-          relative(ys + 2 * next, oy), relative(zs + 2 * next, oz),
-          hn::Set(d, packet.shear_x[lane]), hn::Set(d, packet.shear_y[lane]),
-          hn::Set(d, packet.direction[kx][lane]), hn::Set(d, packet.direction[ky][lane]),
-          hn::Set(d, packet.direction[kz][lane]), LanesBelow(d, i, n), t, v, w, det);
-      if (hn::AllFalse(d, inside)) continue;
-      const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::Set(d, packet.t_best[lane])));
-      std::uint32_t hits = MaskBits(d, hn::And(inside, within));
-      if (hits == 0) continue;
-      hn::Store(t, d, ts);
-      hn::Store(v, d, us);
-      hn::Store(w, d, vs);
-      hn::Store(det, d, dets);
-      for (; hits != 0; hits &= hits - 1) {
-        const int k = std::countr_zero(hits);
-        const std::uint32_t id = tree.triangle_id[first + i + static_cast<std::uint32_t>(k)];
-        if ((source & ~kInsideBit) == id) continue;
-        KeepHit<kQuery>(packet, lane, ts[k], us[k] / dets[k], vs[k] / dets[k], id);
-      }
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const std::size_t kz = packet.axis[lane], kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
+  const Real* block = BlockOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const Real *xs = block + kx * n, *ys = block + ky * n, *zs = block + kz * n;
+  const std::size_t next = std::size_t{3} * n;  // from a vertex to the next
+  const auto ox = hn::Set(d, packet.origin[kx][lane]), oy = hn::Set(d, packet.origin[ky][lane]),
+             oz = hn::Set(d, packet.origin[kz][lane]);
+  for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
+    const auto relative = [&](const Real* at, V o)
+                              SHEAF_LAMBDA { return hn::Sub(hn::LoadU(d, at + i), o); };
+    V t, v, w, det;
+    const auto inside = HitTriangle(
+        d, relative(xs, ox), relative(ys, oy), relative(zs, oz), relative(xs + next, ox),
+        relative(ys + next, oy), relative(zs + next, oz), relative(xs + 2 * next, ox),
+        relative(ys + 2 * next, oy), relative(zs + 2 * next, oz), hn::Set(d, packet.shear_x[lane]),
+        hn::Set(d, packet.shear_y[lane]), hn::Set(d, packet.direction[kx][lane]),
+        hn::Set(d, packet.direction[ky][lane]), hn::Set(d, packet.direction[kz][lane]),
+        LanesBelow(d, i, n), t, v, w, det);
+    if (hn::AllFalse(d, inside)) continue;
+    const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::Set(d, packet.t_best[lane])));
+    std::uint32_t hits = MaskBits(d, hn::And(inside, within));
+    if (hits == 0) continue;
+    hn::Store(t, d, ts);
+    hn::Store(v, d, us);
+    hn::Store(w, d, vs);
+    hn::Store(det, d, dets);
+    for (; hits != 0; hits &= hits - 1) {
+      const int k = std::countr_zero(hits);
+      const std::uint32_t id = ids[i + static_cast<std::uint32_t>(k)];
+      if ((source & ~kInsideBit) == id) continue;
+      KeepHit<kQuery>(packet, lane, ts[k], us[k] / dets[k], vs[k] / dets[k], id);
     }
-    return;
   }
-  const Real* block = SphereBlock(tree, leaf);
+}
+
+template <Query kQuery, typename Real>
+HWY_INLINE void SpheresAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
+                                  Packet<Real>& packet, std::uint32_t lane) {
+  const LeafLanes<Real> d;
+  using V = hn::Vec<LeafLanes<Real>>;
+  const std::uint32_t n = LeafCount(leaf), source = packet.source[lane];
+  const IdLanes<LeafLanes<Real>> di;
+  using Id = hn::TFromD<decltype(di)>;
+  alignas(kAlignment) Real ts[kMaxLeafSize], us[kMaxLeafSize], vs[kMaxLeafSize];
+  const auto t_min = hn::Set(d, packet.t_min[lane]);
+  const Real* block = BlockOf<PrimitiveKind::kSphere>(tree, leaf);
+  const std::uint32_t* ids_of = IdsOf<PrimitiveKind::kSphere>(tree, leaf);
   const auto sources = hn::Set(di, Id{source});
   for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
-    const auto ids = LoadIds(d, tree.sphere_id + first + i);
+    const auto ids = LoadIds(d, ids_of + i);
     const auto t_best = hn::Set(d, packet.t_best[lane]);
     const auto relative = [&](int axis) SHEAF_LAMBDA {
       return hn::Sub(hn::Set(d, packet.origin[axis][lane]), hn::LoadU(d, block + axis * n + i));
@@ -230,18 +265,28 @@ HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, P
          {packet.direction[2] + lane, 0}},
         {{block + i, 1}, {block + n + i, 1}, {block + 2 * n + i, 1}},
         {block + 3 * n + i, 1}};
-    V t, u, v;
+    V t, leaves, t_rest;
     std::uint32_t hits =
-        MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, u, v));
+        MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, leaves, t_rest));
     if (hits == 0) continue;
     hn::Store(t, d, ts);
-    hn::Store(u, d, us);
-    hn::Store(v, d, vs);
+    hn::Store(leaves, d, us);
+    hn::Store(t_rest, d, vs);
     for (; hits != 0; hits &= hits - 1) {
       const int k = std::countr_zero(hits);
-      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k],
-                      tree.sphere_id[first + i + static_cast<std::uint32_t>(k)]);
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], ids_of[i + static_cast<std::uint32_t>(k)]);
     }
+  }
+}
+
+template <Query kQuery, typename Real>
+HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, Packet<Real>& packet,
+                               std::uint32_t lane) {
+  switch (LeafKind(leaf)) {
+    case PrimitiveKind::kTriangle:
+      return TrianglesAgainstRay<kQuery>(tree, leaf, packet, lane);
+    case PrimitiveKind::kSphere:
+      return SpheresAgainstRay<kQuery>(tree, leaf, packet, lane);
   }
 }
 

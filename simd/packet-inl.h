@@ -137,6 +137,12 @@ HWY_INLINE std::uint32_t OpenLanes(const Packet<Real>& packet) {
   return MaskBits(d, OpenMask(d, packet));
 }
 
+// Whether there is anything but triangles: the others are screened as spheres.
+template <typename Real>
+HWY_INLINE bool HasScreened(const TreeView<Real>& tree) {
+  return tree.primitive_count() > tree.of(PrimitiveKind::kTriangle).count;
+}
+
 // What leaf tests read of the rays, and only of the kinds that the tree has.
 template <typename Real>
 HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packet) {
@@ -155,7 +161,7 @@ HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packe
   const auto along = by_axis(dx, dy, dz);
   hn::Store(hn::Div(by_axis(dy, dz, dx), along), d, packet.shear_x);
   hn::Store(hn::Div(by_axis(dz, dx, dy), along), d, packet.shear_y);
-  if (tree.sphere_count > 0) hn::Store(ScreenScale(d, dx, dy, dz), d, packet.screen);
+  if (HasScreened(tree)) hn::Store(ScreenScale(d, dx, dy, dz), d, packet.screen);
 }
 
 // Bit k: the direction's component along axis k has a minus sign.

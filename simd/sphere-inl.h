@@ -1,4 +1,4 @@
-// Pairs of a ray and a sphere, one a lane: src/scalar/intersect_sphere.h, screened in Real.
+// Pairs of a ray and a sphere, one a lane: src/scalar/sphere.h, screened in Real.
 //
 // A packet meets one sphere with the sphere in every lane, a ray meets several with the ray in
 // every lane.
@@ -142,12 +142,13 @@ HWY_INLINE void ForEachHalf(D d, std::uint32_t wanted, Body body) {
   }
 }
 
-// The lanes of `screened` that hit within [t_min, t_max], with t, u and v: src/scalar/trace.h,
-// HitSphere. `source` and `id` are the rays' sources and the spheres' ids; no lane of `screened`
-// starts outside on its sphere. Half a vector at a time, and no half without candidates.
+// The lanes of `screened` that hit within [t_min, t_max], with t, `leaves` and `t_rest`:
+// HitSphere of src/scalar/sphere.h. `source` and `id` are the rays' sources and the spheres' ids;
+// no lane of `screened` starts outside on its sphere. Half a vector at a time, and no half without
+// candidates.
 template <class D, class V, class M, class VI, typename Real = hn::TFromD<D>>
 HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V t_min, V t_max,
-                       M screened, V& t, V& u, V& v) {
+                       M screened, V& t, V& leaves, V& t_rest) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
   const IdLanes<D> di;
@@ -156,9 +157,9 @@ HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V 
   alignas(kAlignment) Real roots[kMaxLanes], rests[kMaxLanes], is_far[kMaxLanes];
   const VI inside_id = hn::Or(id, hn::Set(di, hn::TFromD<IdLanes<D>>{kInsideBit}));
   const auto inside = hn::RebindMask(d, hn::Eq(source, inside_id));
-  u = hn::IfThenElse(inside, one, zero);
-  hn::Store(u, d, is_far);
-  hn::Store(u, d, roots);
+  leaves = hn::IfThenElse(inside, one, zero);
+  hn::Store(leaves, d, is_far);
+  hn::Store(leaves, d, roots);
   hn::Store(zero, d, rests);
   const std::uint32_t candidates = MaskBits(d, screened);
   ForEachHalf(d, candidates, [&](std::uint32_t lane) SHEAF_LAMBDA {
@@ -183,15 +184,15 @@ HWY_INLINE M HitSphere(D d, const SpherePairs<Real>& pairs, VI source, VI id, V 
   };
   find_roots(candidates);
   t = hn::Load(d, roots);
-  v = hn::Load(d, rests);
+  t_rest = hn::Load(d, rests);
   // Rays that start in a sphere, or past it, see its far root. A NaN root is in no interval.
   const auto too_near = hn::AndNot(hn::Or(inside, hn::Le(t_min, t)), screened);
   if (!hn::AllFalse(d, too_near)) {
     hn::Store(one, d, is_far);
-    u = hn::IfThenElse(too_near, one, u);
+    leaves = hn::IfThenElse(too_near, one, leaves);
     find_roots(MaskBits(d, too_near));
     t = hn::IfThenElse(too_near, hn::Load(d, roots), t);
-    v = hn::IfThenElse(too_near, hn::Load(d, rests), v);
+    t_rest = hn::IfThenElse(too_near, hn::Load(d, rests), t_rest);
   }
   const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, t_max));
   return hn::And(screened, within);

@@ -1,6 +1,6 @@
-#include "simd/sphere_surface.h"
-
 #include <algorithm>
+
+#include "simd/surfaces.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/sphere_surface.cc"
@@ -24,7 +24,7 @@ struct HitBlock {
   alignas(kAlignment) Real direction[3][kBlock];
   alignas(kAlignment) Real center[3][kBlock];
   alignas(kAlignment) Real radius[kBlock];
-  alignas(kAlignment) Real t[kBlock], rest[kBlock];
+  alignas(kAlignment) Real t[kBlock], t_rest[kBlock];
   alignas(kAlignment) Real leaves[kBlock];  // 1: the far root; 0: the near one
 };
 
@@ -40,7 +40,7 @@ HWY_INLINE void StoreSurfaces(const HitBlock<Real>& block, std::uint32_t i, std:
   const auto cx = wide(block.center[0]), cy = wide(block.center[1]), cz = wide(block.center[2]);
   const auto r = wide(block.radius);
   const auto leaves = hn::Ne(wide(block.leaves), hn::Zero(dw));
-  const auto t = hn::Add(wide(block.t), wide(block.rest));
+  const auto t = hn::Add(wide(block.t), wide(block.t_rest));
   const auto along = [&](int axis, auto c) SHEAF_LAMBDA {
     return hn::Add(hn::Sub(wide(block.origin[axis]), c), hn::Mul(wide(block.direction[axis]), t));
   };
@@ -78,31 +78,33 @@ HWY_INLINE void FetchHits(const SphereArrays<Real>& spheres, const RayView<Real>
   // Lanes past the count gather element 0.
   const auto lanes = hn::RebindMask(di, LanesBelow(d, i, batch.count));
   const auto ray = hn::IfThenElseZero(lanes, LoadIds(d, batch.ray + i));
-  const auto local = hn::IfThenElseZero(lanes, LoadIds(d, batch.local + i));
+  const auto index = hn::IfThenElseZero(lanes, LoadIds(d, batch.index + i));
   const std::uint32_t wanted = batch.count - i;
   const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(d), wanted);
-  const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(d), wanted);
+  const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(d), wanted);
   const auto of_ray = [&](const Real* array)
                           HWY_ATTR { return Fetch(d, ray_pattern, array, batch.ray[i], ray); };
-  const auto of_local = [&](const Real* array) HWY_ATTR {
-    return Fetch(d, local_pattern, array, batch.local[i], local);
+  const auto of_primitive = [&](const Real* array) HWY_ATTR {
+    return Fetch(d, index_pattern, array, batch.index[i], index);
   };
   const auto dx = of_ray(rays.direction_x);
   const auto dy = of_ray(rays.direction_y);
   const auto dz = of_ray(rays.direction_z);
-  const auto leaves = hn::Ne(of_ray(hits.u), hn::Zero(d));
+  const Real* const hit_leaves = hits.u;  // a sphere's names for these two
+  const Real* const hit_t_rest = hits.v;
+  const auto leaves = hn::Ne(of_ray(hit_leaves), hn::Zero(d));
   hn::Store(of_ray(rays.origin_x), d, block.origin[0] + at);
   hn::Store(of_ray(rays.origin_y), d, block.origin[1] + at);
   hn::Store(of_ray(rays.origin_z), d, block.origin[2] + at);
   hn::Store(dx, d, block.direction[0] + at);
   hn::Store(dy, d, block.direction[1] + at);
   hn::Store(dz, d, block.direction[2] + at);
-  hn::Store(of_local(spheres.center_x), d, block.center[0] + at);
-  hn::Store(of_local(spheres.center_y), d, block.center[1] + at);
-  hn::Store(of_local(spheres.center_z), d, block.center[2] + at);
-  hn::Store(of_local(spheres.radius), d, block.radius + at);
+  hn::Store(of_primitive(spheres.center_x), d, block.center[0] + at);
+  hn::Store(of_primitive(spheres.center_y), d, block.center[1] + at);
+  hn::Store(of_primitive(spheres.center_z), d, block.center[2] + at);
+  hn::Store(of_primitive(spheres.radius), d, block.radius + at);
   hn::Store(of_ray(hits.t), d, block.t + at);
-  hn::Store(of_ray(hits.v), d, block.rest + at);
+  hn::Store(of_ray(hit_t_rest), d, block.t_rest + at);
   hn::Store(hn::IfThenElseZero(leaves, hn::Set(d, Real(1))), d, block.leaves + at);
 
   hn::StoreU(dx, d, surfaces.direction_x + i);
@@ -120,7 +122,7 @@ HWY_INLINE void FetchHits(const SphereArrays<Real>& spheres, const RayView<Real>
 }
 
 template <typename Real>
-void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>& rays,
+void SphereSurfacesLanes(const GeometryView<Real>& geometry, const RayView<Real>& rays,
                          const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                          const SurfaceOutput<Real>& surfaces) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
@@ -129,7 +131,7 @@ void SphereSurfacesLanes(const SphereArrays<Real>& spheres, const RayView<Real>&
   for (std::uint32_t first = 0; first < batch.count; first += kBlock) {
     const std::uint32_t count = std::min(kBlock, batch.count - first);
     for (std::uint32_t i = 0; i < count; i += lanes) {
-      FetchHits(spheres, rays, hits, batch, first + i, needs, surfaces, block, i);
+      FetchHits(geometry.spheres, rays, hits, batch, first + i, needs, surfaces, block, i);
     }
     for (std::uint32_t i = 0; i < count; i += wide_lanes) {
       StoreSurfaces(block, i, std::size_t{first} + i, surfaces);

@@ -60,9 +60,13 @@ struct PathFields {
 };
 
 // What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
-// are 0) and parameters of the hit. Triangle: barycentric weights of the second and third vertex.
-// Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so
-// that t + v is the root to twice the bits of float (0 in double and in fast arithmetic).
+// are 0) and two parameters of the hit, which mean something else for each kind:
+//   triangle: u and v, the barycentric weights of the second and third vertex
+//   sphere: `leaves`, 0 where the ray enters and 1 where it leaves, and `t_rest`, what rounding
+//   took
+//     from t, so that t + t_rest is the root to twice the bits of float (0 in double and in fast
+//     arithmetic)
+// Who writes or reads hits of one kind calls them by these names.
 template <typename Real, template <typename> class Field>
 struct HitFields {
   Field<Real> t, u, v;
@@ -143,7 +147,7 @@ constexpr void ForEachField(A& a, F f) {
 // A list of hits that are treated alike: positions in the ray stream, and what each ray hit there.
 struct HitBatch {
   const std::uint32_t* ray;
-  const std::uint32_t* local;      // index into the spheres, or into the triangles
+  const std::uint32_t* index;      // into the arrays of its kind
   const std::uint32_t* primitive;  // id
   std::uint32_t count;
 };

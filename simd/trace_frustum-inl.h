@@ -92,7 +92,7 @@ HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Frustum<Real>& frustu
   // Within an octant and about a dominant axis, shears are from 0 to 1.
   const Real view_x = ahead > 0 ? std::min(Real(1), size(frustum.kx) / ahead) : Real(1);
   const Real view_y = ahead > 0 ? std::min(Real(1), size(frustum.ky) / ahead) : Real(1);
-  const Real leaves = static_cast<Real>(tree.triangle_count + tree.sphere_count) / kLeafFill;
+  const Real leaves = static_cast<Real>(tree.primitive_count()) / kLeafFill;
   return covered * leaves > kMostLeaves * static_cast<Real>(frustum.count) * view_x * view_y;
 }
 
@@ -309,9 +309,10 @@ template <Query kQuery, typename Real>
 HWY_INLINE void TrianglesAgainstFrustum(const TreeView<Real>& tree, std::uint32_t child,
                                         Frustum<Real>& frustum, std::uint32_t packets) {
   const Lanes<Real> d;
-  const std::uint32_t n = LeafCount(child), first = LeafFirst(child);
+  const std::uint32_t n = LeafCount(child);
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, child);
   FrustumLeaf<Real> leaf;
-  LoadTriangles(frustum, TriangleBlock(tree, child), n, leaf);
+  LoadTriangles(frustum, BlockOf<PrimitiveKind::kTriangle>(tree, child), n, leaf);
   for (; packets != 0; packets &= packets - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
     Packet<Real>& packet = frustum.packets[k];
@@ -324,7 +325,7 @@ HWY_INLINE void TrianglesAgainstFrustum(const TreeView<Real>& tree, std::uint32_
       const auto y = [&](int v) SHEAF_LAMBDA { return hn::Set(d, leaf.y[v][i]); };
       const auto z = [&](int v) SHEAF_LAMBDA { return hn::Set(d, leaf.z[v][i]); };
       TriangleAgainstPacket<kQuery>(d, packet, frustum.kz, x(0), y(0), z(0), x(1), y(1), z(1), x(2),
-                                    y(2), z(2), tree.triangle_id[first + i], open);
+                                    y(2), z(2), ids[i], open);
     }
     frustum.beam.t_last[k] = LastDepth(frustum, packet);
   }
@@ -371,7 +372,7 @@ HWY_INLINE void SpheresAgainstFrustum(const TreeView<Real>& tree, std::uint32_t 
                                       Frustum<Real>& frustum, std::uint32_t packets) {
   const Lanes<Real> d;
   const std::uint32_t n = LeafCount(child);
-  const Real* block = SphereBlock(tree, child);
+  const Real* block = BlockOf(tree, child);
   for (; packets != 0; packets &= packets - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
     Packet<Real>& packet = frustum.packets[k];
@@ -392,7 +393,7 @@ HWY_NOINLINE void TraceFrustum(const TreeView<Real>& tree, Frustum<Real>& frustu
   TraceBeam(tree, frustum.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     std::uint32_t packets = MaskBits(d, met);
     if (IsLeaf(child)) {
-      if (IsTriangleLeaf(child)) {
+      if (HasTriangles(child)) {
         TrianglesAgainstFrustum<kQuery>(tree, child, frustum, packets);
       } else {
         SpheresAgainstFrustum<kQuery>(tree, child, frustum, packets);

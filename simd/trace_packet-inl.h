@@ -78,9 +78,11 @@ HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t le
   const auto t_last = hn::Set(d8, hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, beam.t_last))));
   const auto growth = hn::Set(d8, Real(kBoxGrowth));
   std::uint32_t met = 0;
-  const bool are_triangles = IsTriangleLeaf(leaf);
+  // Of anything but triangles the first four fields are a sphere around it.
+  const bool are_triangles = HasTriangles(leaf);
+  const Real* first_field = BlockOf(tree, leaf);
   for (std::uint32_t i = 0; i < n; i += LaneCount(d8)) {
-    const Real* block = (are_triangles ? TriangleBlock(tree, leaf) : SphereBlock(tree, leaf)) + i;
+    const Real* block = first_field + i;
     const auto field = [&](int k) SHEAF_LAMBDA { return hn::LoadU(d8, block + k * n); };
     const auto low = [&](int axis) SHEAF_LAMBDA {
       if (!are_triangles) return hn::Sub(field(axis), field(3));

@@ -32,7 +32,7 @@ HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
   constexpr std::size_t kLine = 64;
   const void* start;
   if (IsLeaf(child)) {
-    start = IsTriangleLeaf(child) ? TriangleBlock(tree, child) : SphereBlock(tree, child);
+    start = BlockOf(tree, child);
   } else {
     start = &tree.nodes[child];
   }

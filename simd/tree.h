@@ -1,65 +1,42 @@
-// Primitives as arrays and the tree over them, as plain views.
+// The tree over primitives of all kinds, as a plain view.
 #ifndef SHEAF_SIMD_TREE_H_
 #define SHEAF_SIMD_TREE_H_
 
 #include <cstddef>
 #include <cstdint>
 
+#include "simd/primitives.h"
 #include "simd/streams.h"
 
 namespace sheaf {
 
-template <typename Real>
-struct SphereArrays {
-  std::uint32_t count;
-  const Real *center_x, *center_y, *center_z;
-  const Real* radius;  // NaN: never hit (stands for radius 0)
-  const std::uint32_t* id;
-};
-
-template <typename Real>
-struct TriangleArrays {
-  std::uint32_t count;
-  const Real* vertex[3][3];  // [vertex][axis]; NaN: never hit (stands for zero area)
-  const Real* uv[3][2];      // [vertex][u or v]; null where no material asks for coordinates
-  // Null where no mesh has them. A normal of 0, or a mean of 0, stands for the face's own; a colour
-  // of 1 for none. Normals have any length and either side.
-  const Real* normal[3][3];  // [vertex][axis]
-  const Real* colour[3][3];  // [vertex][channel]
-  const std::uint32_t* id;
-};
-
-// Spheres and triangles share one range of ids.
-template <typename Real>
-struct GeometryView {
-  SphereArrays<Real> spheres;
-  TriangleArrays<Real> triangles;
-};
-
-// ---- The tree ----
-// A bounding volume hierarchy of eight children a node over spheres and triangles together. A child
-// is an inner node or a leaf of one kind of primitive, so that the kind is asked once a leaf.
+// A bounding volume hierarchy of eight children a node over all kinds together. A child is an inner
+// node or a leaf of one kind of primitive, so that the kind is asked once a leaf.
 
 inline constexpr std::uint32_t kTreeWidth = 8;
 inline constexpr std::uint32_t kMaxLeafSize = 8;
-inline constexpr std::uint32_t kMaxTreePrimitives = 1u << 26;  // of each kind
 // Levels of nodes at most, the root's included, whatever the scene: a traversal's stack is an
 // array. A depth-first walk leaves at most seven children a level behind.
 inline constexpr std::uint32_t kMaxTreeDepth = 48;
 inline constexpr std::uint32_t kTreeStackSize = kMaxTreeDepth * (kTreeWidth - 1) + 1;
 
-// A child: the index of a node, or a leaf as its kind, size and first position in the kind's
-// blocks. kNoChild is a leaf to no one: its box is empty.
+// A child: the index of a node, or a leaf: kLeafBit, its kind, its size less one (three bits) and
+// its first position in the kind's blocks. kNoChild is a leaf to no one: its box is empty, and no
+// block has a position so high.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
-inline constexpr std::uint32_t kTriangleLeafBit = 0x40000000u;
+inline constexpr std::uint32_t kLeafKindShift = kIndexBits + 3;
 inline constexpr std::uint32_t kNoChild = 0xffffffffu;
-constexpr std::uint32_t MakeLeaf(std::uint32_t kind_bit, std::uint32_t first, std::uint32_t count) {
-  return kLeafBit | kind_bit | (count - 1) << 26 | first;
+static_assert((kLeafBit >> kLeafKindShift) == kKindMask + 1);
+constexpr std::uint32_t MakeLeaf(PrimitiveKind kind, std::uint32_t first, std::uint32_t count) {
+  return kLeafBit | static_cast<std::uint32_t>(kind) << kLeafKindShift | (count - 1) << kIndexBits |
+         first;
 }
 constexpr bool IsLeaf(std::uint32_t child) { return (child & kLeafBit) != 0; }
-constexpr bool IsTriangleLeaf(std::uint32_t child) { return (child & kTriangleLeafBit) != 0; }
+constexpr PrimitiveKind LeafKind(std::uint32_t child) {
+  return static_cast<PrimitiveKind>(child >> kLeafKindShift & kKindMask);
+}
 constexpr std::uint32_t LeafFirst(std::uint32_t child) { return child & (kMaxTreePrimitives - 1); }
-constexpr std::uint32_t LeafCount(std::uint32_t child) { return (child >> 26 & 7u) + 1; }
+constexpr std::uint32_t LeafCount(std::uint32_t child) { return (child >> kIndexBits & 7u) + 1; }
 
 // Four cache lines. An absent child has lower = +max and upper = -max: no ray meets it.
 struct alignas(kAlignment) TreeNode {
@@ -90,21 +67,46 @@ inline constexpr float kBoxAbsoluteSlack = 0x1p-70f;
 // The far side of an interval moves out by this factor. Twice kBoxGrowth, for both sides.
 inline constexpr float kBoxFarFactor = 1 + 2 * kBoxGrowth;
 
-// A leaf block of n primitives that begins at position `first` holds n numbers of each field in
-// turn: triangles from 9 * first (vertex 0 x, y, z, vertex 1 x, ...), spheres from 4 * first
-// (center x, y, z, radius). Blocks lie without gaps; a whole vector may be read at the last field.
+// The primitives of one kind, leaf by leaf. A leaf of n of them that begins at position `first`
+// holds n numbers of each field in turn, from `field count` * first on: triangles vertex 0 x, y, z,
+// vertex 1 x, ..., spheres center x, y, z, radius. Leaves lie without gaps; a whole vector may be
+// read at the last field.
+template <typename Real>
+struct BlockView {
+  const Real* fields;
+  const std::uint32_t* id;  // primitive id by position
+  std::uint32_t count;
+};
+
 template <typename Real>
 struct TreeView {
   const TreeNode* nodes;     // the root first
   std::uint32_t node_count;  // 0: no primitives
-  std::uint32_t triangle_count, sphere_count;
-  const Real* triangles;
-  const Real* spheres;
-  const std::uint32_t* triangle_id;  // primitive id by position
-  const std::uint32_t* sphere_id;
+  BlockView<Real> blocks[kKindCount];
   float lower[3], upper[3];  // of all boxes; lower > upper without primitives
   bool skips_boxes;  // so few primitives that boxes pay for tiles alone; set where there is no node
+
+  const BlockView<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }
+  std::uint32_t primitive_count() const {
+    std::uint32_t count = 0;
+    for (const BlockView<Real>& block : blocks) count += block.count;
+    return count;
+  }
 };
+
+// Shows a leaf's block as arrays of its kind.
+template <typename Real, typename Arrays>
+constexpr void ShowLeaf(const TreeView<Real>& tree, std::uint32_t leaf, Arrays& arrays) {
+  const BlockView<Real>& block = tree.of(Arrays::kKind);
+  const std::uint32_t first = LeafFirst(leaf), n = LeafCount(leaf);
+  const Real* next = block.fields + std::size_t{Arrays::kFieldCount} * first;
+  Arrays::ForEachField(arrays, [&](const Real*& field) {
+    field = next;
+    next += n;
+  });
+  arrays.count = n;
+  arrays.id = block.id + first;
+}
 
 // Whether box tests hold for the tree.
 template <typename Real>

@@ -1,4 +1,4 @@
-// Pairs of a ray and a triangle, one a lane: src/scalar/intersect_triangle.h (Woop, Benthin, Wald
+// Pairs of a ray and a triangle, one a lane: src/scalar/triangle.h (Woop, Benthin, Wald
 // 2013, unfused).
 //
 // A packet meets one triangle with the triangle in every lane, a ray meets several with the ray in

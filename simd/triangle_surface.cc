@@ -1,4 +1,4 @@
-#include "simd/triangle_surface.h"
+#include "simd/surfaces.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/triangle_surface.cc"
@@ -13,9 +13,10 @@ HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
-void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<Real>& rays,
+void TriangleSurfacesLanes(const GeometryView<Real>& geometry, const RayView<Real>& rays,
                            const HitView<Real>& hits, const HitBatch& batch, std::uint32_t needs,
                            const SurfaceOutput<Real>& surfaces) {
+  const TriangleArrays<Real>& triangles = geometry.triangles;
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
   const IdLanes<NarrowLanes<Real>> di;
@@ -25,14 +26,14 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     // Lanes past the count gather element 0.
     const auto lanes = hn::RebindMask(di, LanesBelow(dn, i, batch.count));
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
-    const auto local = hn::IfThenElseZero(lanes, LoadIds(dn, batch.local + i));
+    const auto index = hn::IfThenElseZero(lanes, LoadIds(dn, batch.index + i));
     const std::uint32_t wanted = batch.count - i;
     const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
-    const IdPattern local_pattern = PatternOf(batch.local + i, LaneCount(dn), wanted);
+    const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(dn), wanted);
     const auto of_ray = [&](const Real* array)
                             HWY_ATTR { return Fetch(dn, ray_pattern, array, batch.ray[i], ray); };
-    const auto of_local = [&](const Real* array) HWY_ATTR {
-      return Fetch(dn, local_pattern, array, batch.local[i], local);
+    const auto of_primitive = [&](const Real* array) HWY_ATTR {
+      return Fetch(dn, index_pattern, array, batch.index[i], index);
     };
     const auto direction_x = of_ray(rays.direction_x);
     const auto direction_y = of_ray(rays.direction_y);
@@ -42,8 +43,9 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     const auto mean = [&](W a, W b, W c) HWY_ATTR {
       return hn::Add(hn::Add(hn::Mul(a, w0), hn::Mul(b, w1)), hn::Mul(c, w2));
     };
-    const auto vertex = [&](int number, int axis)
-                            HWY_ATTR { return Widen(of_local(triangles.vertex[number][axis])); };
+    const auto vertex = [&](int number, int axis) HWY_ATTR {
+      return Widen(of_primitive(triangles.vertex[number][axis]));
+    };
     const W ax = vertex(0, 0), ay = vertex(0, 1), az = vertex(0, 2);
     const W bx = vertex(1, 0), by = vertex(1, 1), bz = vertex(1, 2);
     const W cx = vertex(2, 0), cy = vertex(2, 1), cz = vertex(2, 2);
@@ -78,7 +80,7 @@ void TriangleSurfacesLanes(const TriangleArrays<Real>& triangles, const RayView<
     hn::StoreU(direction_z, dn, surfaces.direction_z + i);
     const auto surface_coordinate = [&](int axis) HWY_ATTR {
       const auto at = [&](int number)
-                          HWY_ATTR { return Widen(of_local(triangles.uv[number][axis])); };
+                          HWY_ATTR { return Widen(of_primitive(triangles.uv[number][axis])); };
       return Narrow<Real>(mean(at(0), at(1), at(2)));
     };
     if ((needs & kNeedsCoordinates) && triangles.uv[0][0]) {

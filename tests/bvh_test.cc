@@ -79,6 +79,15 @@ Primitives<Real> SameTriangles(int count) {
   return primitives;
 }
 
+template <typename Tree>
+auto& TrianglesOf(Tree& tree) {
+  return tree.of(PrimitiveKind::kTriangle);
+}
+template <typename Tree>
+auto& SpheresOf(Tree& tree) {
+  return tree.of(PrimitiveKind::kSphere);
+}
+
 template <typename Real>
 std::uint32_t DepthOf(const Tree<Real>& tree) {
   std::vector<std::uint32_t> level(tree.node_count, 1);
@@ -115,10 +124,10 @@ template <typename Real>
 void CheckSameTree(const Tree<Real>& a, const Tree<Real>& b) {
   CHECK(a.node_count == b.node_count);
   CHECK(SameBytes(a.nodes, b.nodes));
-  CHECK(SameBytes(a.triangles, b.triangles));
-  CHECK(SameBytes(a.spheres, b.spheres));
-  CHECK(SameBytes(a.triangle_id, b.triangle_id));
-  CHECK(SameBytes(a.sphere_id, b.sphere_id));
+  for (std::size_t k = 0; k < kKindCount; ++k) {
+    CHECK(SameBytes(a.blocks[k].fields, b.blocks[k].fields));
+    CHECK(SameBytes(a.blocks[k].id, b.blocks[k].id));
+  }
   CHECK(std::memcmp(a.lower, b.lower, sizeof(a.lower)) == 0);
   CHECK(std::memcmp(a.upper, b.upper, sizeof(a.upper)) == 0);
 }
@@ -144,7 +153,7 @@ TEST_CASE_TEMPLATE("the tree does not depend on the number of threads", Real, fl
   }
   const GeometryView<Real> geometry = primitives.view();
   const Tree<Real> tree = SoundTree(geometry);
-  CHECK(tree.sphere_count < geometry.spheres.count);
+  CHECK(SpheresOf(tree).count < geometry.spheres.count);
   for (const int threads : {2, 4, 0}) {
     const Result<Tree<Real>> other = BuildTree(geometry, threads);
     REQUIRE(other.ok());
@@ -257,7 +266,7 @@ TEST_CASE_TEMPLATE("NaN is left out, infinity refused", Real, float, double) {
     Real& number = round % 2 ? primitives.triangle[round % 9][t] : primitives.sphere[round % 4][s];
     number = kNaN;
     const Tree<Real> tree = SoundTree(primitives.view());
-    CHECK(tree.triangle_count + tree.sphere_count == 49);
+    CHECK(TrianglesOf(tree).count + SpheresOf(tree).count == 49);
     number = round % 4 < 2 ? kInfinity : -kInfinity;
     const Result<Tree<Real>> refused = BuildTree(primitives.view());
     REQUIRE_FALSE(refused.ok());
@@ -341,11 +350,13 @@ void ExpectFound(std::span<const Planted> planted) {
 TEST_CASE("planted defects of primitives and children are found") {
   const Planted planted[] = {
       {"missing", [](Tree<float>& tree) { tree.node_count = 0; }},
-      {"is there twice", [](Tree<float>& tree) { tree.triangle_id[5] = tree.triangle_id[4]; }},
-      {"no triangle", [](Tree<float>& tree) { tree.triangle_id[5] = 1u << 30; }},
-      {"no triangle", [](Tree<float>& tree) { tree.triangle_id[5] = tree.sphere_id[5]; }},
-      {"another field", [](Tree<float>& tree) { tree.triangles[100] += 1; }},
-      {"another field", [](Tree<float>& tree) { tree.spheres[100] = -tree.spheres[100]; }},
+      {"is there twice",
+       [](Tree<float>& tree) { TrianglesOf(tree).id[5] = TrianglesOf(tree).id[4]; }},
+      {"no triangle", [](Tree<float>& tree) { TrianglesOf(tree).id[5] = 1u << 30; }},
+      {"no triangle", [](Tree<float>& tree) { TrianglesOf(tree).id[5] = SpheresOf(tree).id[5]; }},
+      {"another field", [](Tree<float>& tree) { TrianglesOf(tree).fields[100] += 1; }},
+      {"another field",
+       [](Tree<float>& tree) { SpheresOf(tree).fields[100] = -SpheresOf(tree).fields[100]; }},
       {"is a child twice",
        [](Tree<float>& tree) {
          std::uint32_t* const child = tree.nodes[0].child;
@@ -368,7 +379,7 @@ TEST_CASE("planted defects of primitives and children are found") {
       {"a leaf beyond the last", [](Tree<float>& tree) {
          const auto [node, slot] = FindChild(tree, IsPresentLeaf);
          tree.nodes[node].child[slot] =
-             MakeLeaf(kTriangleLeafBit, tree.triangle_count - 1, kMaxLeafSize);
+             MakeLeaf(PrimitiveKind::kTriangle, TrianglesOf(tree).count - 1, kMaxLeafSize);
        }}};
   ExpectFound(planted);
 }
@@ -429,7 +440,7 @@ TEST_CASE("planted defects of boxes, orders and counts are found") {
          }
          for (std::uint32_t& o : tree.nodes[node].order) o = order;
        }},
-      {"but", [](Tree<float>& tree) { ++tree.sphere_count; }},
+      {"but", [](Tree<float>& tree) { ++SpheresOf(tree).count; }},
       {"is no node's child", [](Tree<float>& tree) {
          AlignedArray<TreeNode> nodes;
          nodes.Allocate(tree.node_count + 1);

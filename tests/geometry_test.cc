@@ -1,6 +1,6 @@
 // Geometry without the renderer: what Build accepts, what it says of itself, and rays in arrays of
 // any length.
-#include "src/bvh/geometry.h"
+#include "sheaf/geometry.h"
 
 #include <doctest/doctest.h>
 
@@ -17,6 +17,7 @@
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
+#include "src/bvh/geometry_access.h"
 #include "src/bvh/validate_tree.h"
 #include "src/scalar/trace.h"
 
@@ -177,7 +178,7 @@ TEST_CASE("Build makes a sound tree of what it was given") {
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const Model model(random, round * round);
-    CHECK(FindTreeDefect(model.geometry[0].tree(), model.view()) == "");
+    CHECK(FindTreeDefect(GeometryAccess::TreeOf(model.geometry[0]), model.view()) == "");
     const GeometryStatistics statistics = model.geometry[0].statistics();
     CHECK(statistics.triangles + statistics.spheres + statistics.never_hit ==
           model.sphere_id.size() + model.triangle_id.size());
@@ -212,7 +213,7 @@ struct Rays {
     }
   }
 
-  RayView<float> view() const {
+  RayArrays view() const {
     return {number[0].get(), number[1].get(), number[2].get(), number[3].get(),
             number[4].get(), number[5].get(), source.get()};
   }
@@ -228,7 +229,7 @@ void CheckTraces(const Model& model, const std::vector<scalar::Ray<float>>& from
   const auto primitive = Exact<std::uint32_t>(rays.count),
              object = Exact<std::uint32_t>(rays.count), occluded = Exact<std::uint32_t>(rays.count);
   const auto ask = [&](unsigned bit, auto* array) { return wanted >> bit & 1 ? array : nullptr; };
-  const TraceOptions options{.intervals = {rays.t_min.get(), rays.t_max.get()}};
+  const TraceOptions options{.interval = {rays.t_min.get(), rays.t_max.get()}};
   TraceClosest(geometry, rays.view(), rays.count,
                {ask(0, t.get()), ask(1, primitive.get()), ask(2, object.get()), ask(3, u.get()),
                 ask(4, v.get())},
@@ -279,9 +280,9 @@ TEST_CASE("one interval for all, no sources, no geometry") {
   REQUIRE(built.ok());
   REQUIRE(empty.ok());
   const float x[2] = {0.25f, 0.75f}, z[2] = {-1, -3}, zero[2] = {0, 0}, one[2] = {1, 1};
-  const RayView<float> rays = {x, one, z, zero, zero, one, nullptr};
+  const RayArrays rays = {x, one, z, zero, zero, one, nullptr};
   const float y[2] = {0.5f, 0.5f};
-  RayView<float> inside = rays;
+  RayArrays inside = rays;
   inside.origin_y = y;
   float t[2];
   std::uint32_t primitive[2], occluded[2];
@@ -290,7 +291,7 @@ TEST_CASE("one interval for all, no sources, no geometry") {
   CHECK(t[1] == 3);
   CHECK(primitive[0] == 1);
   CHECK(primitive[1] == 0);
-  const TraceOptions near = {.intervals = {.all_t_max = 2}};
+  const TraceOptions near = {.interval = {.all_t_max = 2}};
   TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive}, near);
   TraceOccluded(built.value(), inside, 2, occluded, near);
   CHECK(t[0] == 1);
@@ -303,6 +304,32 @@ TEST_CASE("one interval for all, no sources, no geometry") {
   CHECK(t[0] == 2);
   CHECK(primitive[0] == kNoPrimitive);
   CHECK(occluded[0] == 0);
+}
+
+TEST_CASE("a geometry that was moved from is empty") {
+  GeometryInput input;
+  input.AddTriangles(kSquare, kTwoTriangles);
+  Result<Geometry> built = Geometry::Build(input);
+  REQUIRE(built.ok());
+  const Geometry taken = std::move(built).value();
+  const Geometry& left = built.value();
+  const float x[1] = {0.25f}, z[1] = {-1}, zero[1] = {0}, one[1] = {1};
+  const RayArrays ray = {x, x, z, zero, zero, one};
+  float t[1];
+  std::uint32_t primitive[1], object[1], occluded[1];
+  TraceClosest(left, ray, 1, {.t = t, .primitive = primitive, .object = object});
+  CHECK(t[0] == std::numeric_limits<float>::max());
+  CHECK(primitive[0] == Geometry::kNoPrimitive);
+  CHECK(object[0] == Geometry::kNoPrimitive);
+  TraceOccluded(left, ray, 1, occluded);
+  CHECK(occluded[0] == 0);
+  CHECK(left.object_count() == 0);
+  CHECK(left.first_primitive(0) == 0);
+  CHECK(left.lower()[2] > left.upper()[2]);
+  CHECK(left.statistics().nodes == 0);
+  TraceOccluded(taken, ray, 1, occluded);
+  CHECK(occluded[0] == 1);
+  CHECK(taken.object_count() == 1);
 }
 
 }  // namespace

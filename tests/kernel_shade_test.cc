@@ -11,6 +11,7 @@
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
+#include "src/scalar/trace.h"
 #include "targets.h"
 
 namespace sheaf {
@@ -25,19 +26,17 @@ bool SameBits(Vec3<Real> a, Real x, Real y, Real z) {
   return SameBits(a.x, x) && SameBits(a.y, y) && SameBits(a.z, z);
 }
 
-// Rays that all hit primitive `local` of their kind, with their surfaces by the specification.
+// Rays that all hit primitive `index` of their kind, with their surfaces by the specification.
 template <typename Real>
 struct HitSample {
   std::vector<Ray<Real>> rays;
   std::vector<scalar::Hit<Real>> hits;
-  std::vector<std::uint32_t> local;
+  std::vector<std::uint32_t> index;
   std::vector<Surface<Real>> surfaces;
 };
 
-enum class Shape { kSphere, kTriangle };
-
 template <typename Real>
-HitSample<Real> SampleHits(Random& random, const CompiledScene<Real>& scene, Shape shape,
+HitSample<Real> SampleHits(Random& random, const CompiledScene<Real>& scene, PrimitiveKind kind,
                            std::uint32_t count) {
   HitSample<Real> sample;
   const auto geometry = scene.geometry();
@@ -46,15 +45,12 @@ HitSample<Real> SampleHits(Random& random, const CompiledScene<Real>& scene, Sha
     const Ray<Real> ray{Vec3<double>{o.x, o.y, o.z}.To<Real>(), RandomUnit(random).To<Real>()};
     const auto hit = scalar::TraceClosest(geometry, ray);
     if (hit.primitive == kNoPrimitive) continue;
-    const std::uint32_t local = scene.primitives[hit.primitive].local;
-    if (((local & kTriangleBit) != 0) != (shape == Shape::kTriangle)) continue;
-    const std::uint32_t index = local & ~kTriangleBit;
+    const PrimitiveInfo& info = scene.objects.primitives[hit.primitive];
+    if (info.kind() != kind) continue;
     sample.rays.push_back(ray);
     sample.hits.push_back(hit);
-    sample.local.push_back(index);
-    sample.surfaces.push_back(shape == Shape::kSphere
-                                  ? scalar::SphereSurface(ray, hit, geometry.spheres, index)
-                                  : scalar::TriangleSurface(ray, hit, geometry.triangles, index));
+    sample.index.push_back(info.index());
+    sample.surfaces.push_back(scalar::SurfaceAt(ray, hit, geometry, info.place));
   }
   return sample;
 }
@@ -202,17 +198,17 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
     described.objects.push_back({"mesh", RandomMesh(random, 12), 0});
     const CompiledScene<Real> scene = CompileScene<Real>(described);
     const auto geometry = scene.geometry();
-    for (const Shape shape : {Shape::kSphere, Shape::kTriangle}) {
+    for (const PrimitiveKind kind : {PrimitiveKind::kSphere, PrimitiveKind::kTriangle}) {
       for (const std::uint32_t count : kCounts) {
-        const HitSample<Real> sample = SampleHits(random, scene, shape, count);
+        const HitSample<Real> sample = SampleHits(random, scene, kind, count);
         RayStream<Real> rays;
         HitStream<Real> hits;
         SurfaceStream<Real> surfaces;
         rays.Allocate(count), hits.Allocate(count), surfaces.Allocate(count);
-        AlignedArray<std::uint32_t> ray, local, primitive;
-        for (auto* list : {&ray, &local, &primitive}) list->Allocate(StreamCapacity(count));
+        AlignedArray<std::uint32_t> ray, index, primitive;
+        for (auto* list : {&ray, &index, &primitive}) list->Allocate(StreamCapacity(count));
         // The batch lists its rays backwards; what lies past its end must not be followed.
-        for (std::uint32_t i = 0; i < StreamCapacity(count); ++i) ray[i] = local[i] = 0x7ffffff0;
+        for (std::uint32_t i = 0; i < StreamCapacity(count); ++i) ray[i] = index[i] = 0x7ffffff0;
         for (std::uint32_t i = 0; i < count; ++i) {
           const auto out = rays.output();
           const auto hit = hits.output();
@@ -224,16 +220,13 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
           out.direction_z[i] = sample.rays[i].direction.z;
           hit.t[i] = sample.hits[i].t, hit.u[i] = sample.hits[i].u, hit.v[i] = sample.hits[i].v;
           ray[i] = count - 1 - i;
-          local[i] = sample.local[count - 1 - i];
+          index[i] = sample.index[count - 1 - i];
           primitive[i] = sample.hits[count - 1 - i].primitive;
         }
-        const HitBatch batch{ray.data(), local.data(), primitive.data(), count};
-        if (shape == Shape::kSphere) {
-          kernels.sphere_surfaces(geometry.spheres, rays.view(), hits.view(), batch, kNeedsAll,
+        const HitBatch batch{ray.data(), index.data(), primitive.data(), count};
+        kernels.surfaces_of(kind)(geometry, rays.view(), hits.view(), batch, kNeedsAll,
                                   surfaces.output());
-        } else {
-          kernels.triangle_surfaces(geometry.triangles, rays.view(), hits.view(), batch, kNeedsAll,
-                                    surfaces.output());
+        if (kind == PrimitiveKind::kTriangle) {
           kernels.blend_vertices(geometry.triangles, hits.view(), batch, kNeedsAll,
                                  surfaces.output());
         }
@@ -244,7 +237,7 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
           REQUIRE(SameBits(want.normal, got.normal_x[i], got.normal_y[i], got.normal_z[i]));
           REQUIRE(
               SameBits(want.direction, got.direction_x[i], got.direction_y[i], got.direction_z[i]));
-          if (shape == Shape::kTriangle) {
+          if (kind == PrimitiveKind::kTriangle) {
             REQUIRE(SameBits(want.face, got.face_x[i], got.face_y[i], got.face_z[i]));
             REQUIRE(SameBits(want.tint, got.tint_r[i], got.tint_g[i], got.tint_b[i]));
           }

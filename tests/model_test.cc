@@ -14,6 +14,7 @@
 #include "src/formats/read_scene.h"
 #include "src/lab/pov_ray.h"
 #include "src/scalar/spawn.h"
+#include "src/scalar/triangle.h"
 
 #ifdef SHEAF_HAS_ASSIMP
 #include <assimp/postprocess.h>

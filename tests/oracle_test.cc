@@ -162,8 +162,9 @@ void MeasureSpheres(const Kernels<Real>& kernels, Measured& measured) {
     }
     traced.ForEachNormal(
         [&](const HitBatch& batch, const SurfaceOutput<Real>& surfaces) {
-          kernels.sphere_surfaces(traced.scene.geometry().spheres, traced.rays.view(),
-                                  traced.hits.view(), batch, kNeedsAll, surfaces);
+          kernels.surfaces_of(PrimitiveKind::kSphere)(traced.scene.geometry(), traced.rays.view(),
+                                                      traced.hits.view(), batch, kNeedsAll,
+                                                      surfaces);
         },
         [&](std::uint32_t i, Vec3<Real> normal) {
           if (Dot(normals[i], normals[i]) == 0) return;  // a miss that counted as a hit
@@ -218,8 +219,9 @@ void MeasureTriangles(const Kernels<Real>& kernels, Measured& measured) {
     }
     traced.ForEachNormal(
         [&](const HitBatch& batch, const SurfaceOutput<Real>& surfaces) {
-          kernels.triangle_surfaces(traced.scene.geometry().triangles, traced.rays.view(),
-                                    traced.hits.view(), batch, kNeedsAll, surfaces);
+          kernels.surfaces_of(PrimitiveKind::kTriangle)(traced.scene.geometry(), traced.rays.view(),
+                                                        traced.hits.view(), batch, kNeedsAll,
+                                                        surfaces);
         },
         [&](std::uint32_t i, Vec3<Real> normal) {
           measured.triangle_normal.Add(AngleTo(normal, IntersectExactly(rays[i], v).normal));

@@ -38,7 +38,7 @@ CompiledScene<float> CompileOne(const Object& object) {
 FrameView<float> FrameOf(const CompiledScene<float>& scene) {
   FrameView<float> frame{};
   frame.geometry = scene.geometry();
-  frame.primitives = scene.primitives;
+  frame.primitives = scene.objects.primitives;
   return frame;
 }
 

@@ -76,7 +76,8 @@ TEST_CASE("of coplanar duplicates the lowest id is hit") {
   CompiledScene<float> scene = mesh.Compile();
   // The lowest id anywhere in the array.
   const std::uint32_t ids[] = {5, 3, 1, 4, 2, 0};
-  for (std::uint32_t i = 0; i < 6; ++i) scene.triangle_id[i] = ids[i];
+  for (std::uint32_t i = 0; i < 6; ++i)
+    scene.objects.data.arrays.ids(PrimitiveKind::kTriangle)[i] = ids[i];
   int exact = 0;
   for (int i = 0; i < 2000; ++i) {
     const Ray<float> ray{

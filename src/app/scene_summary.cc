@@ -3,30 +3,23 @@
 #include <algorithm>
 #include <variant>
 
+#include "src/scene/shapes.h"
+
 namespace sheaf {
 namespace {
 
 bool IsBlack(const Colour& colour) { return colour == Colour(0.0); }
-
-// Adds one shape to the counts.
-struct ShapeCounter {
-  SceneSummary& summary;
-
-  void operator()(const Sphere&) const { ++summary.spheres; }
-  void operator()(const Quad&) const { summary.triangles += 2; }
-  void operator()(const Triangle&) const { ++summary.triangles; }
-  void operator()(const Mesh& mesh) const { summary.triangles += mesh.triangles.size(); }
-};
 
 }  // namespace
 
 SceneSummary Summarize(const Scene& scene) {
   SceneSummary summary;
   summary.bounds = BoundsOf(scene);
-  const ShapeCounter counter{summary};
+  const auto counts = CountPrimitives(scene);
+  summary.spheres = counts[PrimitiveKind::kSphere];
+  summary.triangles = counts[PrimitiveKind::kTriangle];
   std::vector<const Material*> used;
   for (const Object& object : scene.objects) {
-    std::visit(counter, object.shape);
     used.push_back(&scene.materials[object.material]);
   }
 

@@ -30,17 +30,16 @@ struct Children {
 };
 
 bool FitsLeaves(const Range& range) {
-  return range.triangles <= kMaxLeafSize && range.spheres() <= kMaxLeafSize;
+  return std::all_of(std::begin(range.counts.of), std::end(range.counts.of),
+                     [](std::uint32_t count) { return count <= kMaxLeafSize; });
 }
 
 class NodeBuilder {
  public:
-  NodeBuilder(PrimitiveBoxes& boxes, std::uint32_t* triangles, std::uint32_t* spheres)
+  NodeBuilder(PrimitiveBoxes& boxes, std::uint32_t* const (&indices)[kKindCount])
       : boxes_(boxes.boxes.get()),
-        triangles_(triangles),
-        spheres_(spheres),
-        all_{
-            0, boxes.triangles + boxes.spheres, 0, boxes.triangles, boxes.bounds, boxes.centroids} {
+        all_{0, boxes.counts.total(), {}, boxes.counts, boxes.bounds, boxes.centroids} {
+    std::copy(std::begin(indices), std::end(indices), indices_);
   }
 
   std::unique_ptr<Branch> Build() {
@@ -56,11 +55,10 @@ class NodeBuilder {
     Child child{range, {}};
     if (!FitsLeaves(range)) {
       child.split = depth < kMedianDepth ? FindSplit(boxes_, range) : MedianSplit(range);
-    } else if (range.triangles > 0 && range.spheres() > 0) {
+    } else if (const std::uint32_t first = range.counts[FirstKind(range)]; first < range.size()) {
       child.split.kind = SplitKind::kByKind;
-      child.split.left_count = range.triangles;
-    } else if (range.size() > (range.triangles ? kSmallTriangleLeaf : kSmallSphereLeaf) &&
-               !FitsLeaves(all_)) {
+      child.split.left_count = first;
+    } else if (range.size() > kSmallLeaf && !FitsLeaves(all_)) {
       child.split = FindSplit(boxes_, range);
       if (!(child.split.cost < kWorthSplitting * CostOfLeaf(range))) child.split = {};
     }
@@ -118,12 +116,10 @@ class NodeBuilder {
     std::uint32_t tags[kMaxLeafSize];
     std::transform(begin, end, tags, [](const PrimitiveBox& box) { return box.tag; });
     std::sort(tags, tags + range.size());
-    const bool is_triangles = range.triangles > 0;
-    const std::uint32_t first =
-        is_triangles ? range.first_triangle : range.begin - range.first_triangle;
-    std::transform(tags, tags + range.size(), (is_triangles ? triangles_ : spheres_) + first,
-                   TagIndex);
-    return MakeLeaf(is_triangles ? kTriangleLeafBit : 0, first, range.size());
+    const PrimitiveKind kind = FirstKind(range);
+    const std::uint32_t first = range.before[kind];
+    std::transform(tags, tags + range.size(), indices_[IndexOf(kind)] + first, IndexIn);
+    return MakeLeaf(kind, first, range.size());
   }
 
   // Everything but the children that are nodes.
@@ -187,16 +183,16 @@ class NodeBuilder {
   }
 
   PrimitiveBox* boxes_;
-  std::uint32_t *triangles_, *spheres_;
+  std::uint32_t* indices_[kKindCount];
   Range all_;
   oneapi::tbb::task_group group_;
 };
 
 }  // namespace
 
-std::unique_ptr<Branch> BuildNodes(PrimitiveBoxes& boxes, std::uint32_t* triangles,
-                                   std::uint32_t* spheres) {
-  return NodeBuilder(boxes, triangles, spheres).Build();
+std::unique_ptr<Branch> BuildNodes(PrimitiveBoxes& boxes,
+                                   std::uint32_t* const (&indices)[kKindCount]) {
+  return NodeBuilder(boxes, indices).Build();
 }
 
 }  // namespace sheaf::bvh

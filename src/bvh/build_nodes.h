@@ -17,11 +17,11 @@ struct Branch {
   std::unique_ptr<Branch> child[kTreeWidth];
 };
 
-// Builds over at least one box; reorders `boxes`. Leaves refer to positions in `triangles` and
-// `spheres`, which receive the index of the primitive at each position. Runs on the threads of the
-// caller's arena; the result does not depend on them.
-std::unique_ptr<Branch> BuildNodes(PrimitiveBoxes& boxes, std::uint32_t* triangles,
-                                   std::uint32_t* spheres);
+// Builds over at least one box; reorders `boxes`. Leaves refer to positions in the arrays that
+// `indices` lists by kind, which receive the index of the primitive at each position. Runs on the
+// threads of the caller's arena; the result does not depend on them.
+std::unique_ptr<Branch> BuildNodes(PrimitiveBoxes& boxes,
+                                   std::uint32_t* const (&indices)[kKindCount]);
 
 }  // namespace sheaf::bvh
 

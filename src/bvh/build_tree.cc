@@ -19,45 +19,54 @@ namespace {
 
 using bvh::PrimitiveBoxes;
 
-Error TooMany(const char* kind, std::uint32_t count) {
-  return {ErrorKind::kUsage, std::to_string(count) + " " + kind + ", at most " +
-                                 std::to_string(kMaxTreePrimitives) + " are possible"};
-}
-
 template <typename Real>
 Result<Tree<Real>> Build(const GeometryView<Real>& geometry) {
   Result<PrimitiveBoxes> made = bvh::MakePrimitiveBoxes(geometry);
   if (!made) return made.error();
   PrimitiveBoxes boxes = std::move(made).value();
+  const bool is_empty = boxes.counts.total() == 0;
   Tree<Real> tree;
-  tree.triangle_count = boxes.triangles;
-  tree.sphere_count = boxes.spheres;
-  const bool is_empty = boxes.triangles + boxes.spheres == 0;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr float kMax = std::numeric_limits<float>::max();
     tree.lower[axis] = is_empty ? kMax : boxes.bounds.lower[axis];
     tree.upper[axis] = is_empty ? -kMax : boxes.bounds.upper[axis];
   }
-  tree.triangle_id.Allocate(std::size_t{tree.triangle_count} + kMaxLanes);
-  tree.sphere_id.Allocate(std::size_t{tree.sphere_count} + kMaxLanes);
+  std::uint32_t* indices[kKindCount];  // which become ids
+  for (std::size_t k = 0; k < kKindCount; ++k) {
+    PrimitiveBlocks<Real>& blocks = tree.blocks[k];
+    blocks.count = boxes.counts.of[k];
+    blocks.id.Allocate(std::size_t{blocks.count} + kMaxLanes);
+    indices[k] = blocks.id.data();
+  }
   if (!is_empty) {
-    tree.node_count = bvh::FlattenNodes(
-        bvh::BuildNodes(boxes, tree.triangle_id.data(), tree.sphere_id.data()), tree.nodes);
+    tree.node_count = bvh::FlattenNodes(bvh::BuildNodes(boxes, indices), tree.nodes);
   }
   boxes.boxes.reset();  // before the blocks, which are as large
-  tree.triangles.Allocate(std::size_t{tree.triangle_count} * 9 + kMaxLanes);
-  tree.spheres.Allocate(std::size_t{tree.sphere_count} * 4 + kMaxLanes);
+  ForEachKind(geometry, [&](const auto& arrays) {
+    PrimitiveBlocks<Real>& blocks = tree.of(arrays.kKind);
+    blocks.fields.Allocate(std::size_t{arrays.kFieldCount} * blocks.count + kMaxLanes);
+  });
   bvh::WriteLeaves(geometry, tree);
   return tree;
 }
 
 }  // namespace
 
+Status CheckCounts(const CountsByKind<std::uint64_t>& counts) {
+  for (std::uint32_t k = 0; k < kKindCount; ++k) {
+    if (counts.of[k] <= kMaxTreePrimitives) continue;
+    return Error{ErrorKind::kUsage, std::to_string(counts.of[k]) + " " +
+                                        NameOf(static_cast<PrimitiveKind>(k)) + "s, at most " +
+                                        std::to_string(kMaxTreePrimitives) + " are possible"};
+  }
+  return Done{};
+}
+
 template <typename Real>
 Result<Tree<Real>> BuildTree(const GeometryView<Real>& geometry, int threads) {
-  const std::uint32_t triangles = geometry.triangles.count, spheres = geometry.spheres.count;
-  if (triangles > kMaxTreePrimitives) return TooMany("triangles", triangles);
-  if (spheres > kMaxTreePrimitives) return TooMany("spheres", spheres);
+  CountsByKind<std::uint64_t> counts;
+  ForEachKind(geometry, [&](const auto& arrays) { counts[arrays.kKind] = arrays.count; });
+  if (const Status status = CheckCounts(counts); !status.ok()) return status.error();
   threads = ThreadCount(threads);
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));

@@ -1,4 +1,4 @@
-// Builds the tree over spheres and triangles: binned SAH, top down, eight children at once.
+// Builds the tree over primitives: binned SAH, top down, eight children at once.
 #ifndef SHEAF_BVH_BUILD_TREE_H_
 #define SHEAF_BVH_BUILD_TREE_H_
 
@@ -8,9 +8,12 @@
 
 namespace sheaf {
 
+// Fails with kUsage where there are more than kMaxTreePrimitives of a kind.
+Status CheckCounts(const CountsByKind<std::uint64_t>& counts);
+
 // Primitives with a NaN (a sphere's radius, a triangle's vertex) are never hit and left out. The
-// tree depends on the primitives alone, not on `threads` (0: one a core). Fails with kUsage where
-// there are more than kMaxTreePrimitives of a kind or a coordinate is infinite.
+// tree depends on the primitives alone, not on `threads` (0: one a core). Fails as
+// CheckCounts does, and with kUsage where a coordinate is infinite.
 template <typename Real>
 Result<Tree<Real>> BuildTree(const GeometryView<Real>& geometry, int threads = 0);
 

@@ -103,24 +103,15 @@ Float4 HalfAreas(const Box4 (&box)[3], Float4 scale) {
   return x * (y + z) + y * z + (x + y + z) * 1e-6f;
 }
 
-// What a primitive and a block cost within a range, by the kinds it is made of.
-LeafCost CostOf(const Range& range) {
-  if (range.triangles == range.size()) return kTriangleCost;
-  if (range.triangles == 0) return kSphereCost;
-  return {(kTriangleCost.block + kSphereCost.block) / 2,
-          (kTriangleCost.primitive + kSphereCost.primitive) / 2};
-}
-
-Float4 CostOfCounts(Int4 count, LeafCost cost) {
+Float4 CostOfCounts(Int4 count) {
   static_assert(kMaxLeafSize == 8);
-  return __builtin_convertvector((count + 7) >> 3, Float4) * cost.block +
-         __builtin_convertvector(count, Float4) * cost.primitive;
+  return __builtin_convertvector((count + 7) >> 3, Float4) * kBlockCost +
+         __builtin_convertvector(count, Float4) * kPrimitiveCost;
 }
 
 // Sweeps over the bins from both sides, the three axes in three lanes.
 void ChooseBin(const Bins& bins, const BinMap& map, const Range& range, Split& split) {
   const Float4 scale = Set4(UnitScale(range.bounds));
-  const LeafCost leaf_cost = CostOf(range);
   Float4 right_cost[kMaxBins];
   Box4 boxes[3];
   Int4 counts = {};
@@ -130,7 +121,7 @@ void ChooseBin(const Bins& bins, const BinMap& map, const Range& range, Split& s
     }
     counts += bins.Counts(i);
     // An empty side has an infinite area and no cost: NaN, which never is the best.
-    right_cost[i] = HalfAreas(boxes, scale) * CostOfCounts(counts, leaf_cost);
+    right_cost[i] = HalfAreas(boxes, scale) * CostOfCounts(counts);
   }
   Float4 best = Set4(std::numeric_limits<float>::infinity());
   Int4 best_bin = {};
@@ -141,7 +132,7 @@ void ChooseBin(const Bins& bins, const BinMap& map, const Range& range, Split& s
       boxes[axis].Include(bins.box[i - 1][axis]);
     }
     counts += bins.Counts(i - 1);
-    const Float4 cost = HalfAreas(boxes, scale) * CostOfCounts(counts, leaf_cost) + right_cost[i];
+    const Float4 cost = HalfAreas(boxes, scale) * CostOfCounts(counts) + right_cost[i];
     const Int4 bin = {i, i, i, i};
     best_bin = cost < best ? bin : best_bin;
     best = Min(cost, best);
@@ -169,11 +160,10 @@ float UnitScale(const Box4& box) {
 }
 
 float CostOfLeaf(const Range& range) {
-  const LeafCost cost = CostOf(range);
   const std::uint32_t blocks = (range.size() + kMaxLeafSize - 1) / kMaxLeafSize;
   return HalfArea(range.bounds, UnitScale(range.bounds)) *
-         (static_cast<float>(blocks) * cost.block +
-          static_cast<float>(range.size()) * cost.primitive);
+         (static_cast<float>(blocks) * kBlockCost +
+          static_cast<float>(range.size()) * kPrimitiveCost);
 }
 
 Split MedianSplit(const Range& range) {

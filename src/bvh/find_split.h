@@ -15,16 +15,11 @@ namespace sheaf::bvh {
 // A leaf of n primitives costs kBlockCost for every kMaxLeafSize of them begun, plus kPrimitiveCost
 // each: whole blocks are tested at once. A leaf is split, where the node has room, only if its two
 // halves cost less than kWorthSplitting of it.
-struct LeafCost {
-  float block;
-  float primitive;
-};
-inline constexpr LeafCost kTriangleCost = {1.0f, 0.125f};
-inline constexpr LeafCost kSphereCost = {1.0f, 0.125f};
+// No measurement tells the kinds apart so far.
+inline constexpr float kBlockCost = 1.0f;
+inline constexpr float kPrimitiveCost = 0.125f;
 inline constexpr float kWorthSplitting = 1.0f;
-// Leaves of so many are never split.
-inline constexpr std::uint32_t kSmallTriangleLeaf = 4;
-inline constexpr std::uint32_t kSmallSphereLeaf = 4;
+inline constexpr std::uint32_t kSmallLeaf = 4;  // leaves of so many are never split
 // Bins an axis: a few more the more primitives there are.
 inline constexpr int kMinBins = 8;
 inline constexpr int kMaxBins = 32;
@@ -33,19 +28,24 @@ inline constexpr std::uint32_t kPrimitivesPerBin = 8;
 // Primitives [begin, end) of the builder's array.
 struct Range {
   std::uint32_t begin, end;
-  std::uint32_t first_triangle;  // triangles before `begin`
-  std::uint32_t triangles;       // within
-  Box4 bounds, centroids;        // of the boxes and of the sums lower + upper
+  PrimitiveCounts before, counts;  // by kind: of primitives before `begin`, and within
+  Box4 bounds, centroids;          // of the boxes and of the sums lower + upper
 
   std::uint32_t size() const { return end - begin; }
-  std::uint32_t spheres() const { return size() - triangles; }
 };
+
+// The first kind that is there, in the order of the enumerators.
+inline PrimitiveKind FirstKind(const Range& range) {
+  std::uint32_t kind = 0;
+  while (kind + 1 < kKindCount && range.counts.of[kind] == 0) ++kind;
+  return static_cast<PrimitiveKind>(kind);
+}
 
 enum class SplitKind {
   kNone,
   kBin,     // by position along an axis
   kMedian,  // by position in the array
-  kByKind,  // triangles before spheres
+  kByKind,  // the first kind before the others
 };
 
 struct Split {

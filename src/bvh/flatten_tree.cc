@@ -36,17 +36,16 @@ void Place(std::unique_ptr<Branch> branch, std::uint32_t& next, std::vector<Plac
   }
 }
 
-// One leaf of `fields` numbers a primitive, whose field k of primitive i is field(k)[i].
-template <typename Real, typename Field>
-void WriteLeaf(std::uint32_t leaf, int fields, const Field& field, const std::uint32_t* ids,
-               Real* blocks, std::uint32_t* id) {
+// One leaf of the primitives of one kind.
+template <typename Real, typename Arrays>
+void WriteLeaf(std::uint32_t leaf, const Arrays& arrays, PrimitiveBlocks<Real>& blocks) {
   const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
-  Real* to = blocks + std::size_t{first} * static_cast<std::size_t>(fields);
-  for (int k = 0; k < fields; ++k) {
-    const Real* const from = field(k);
-    for (std::uint32_t i = 0; i < count; ++i) *to++ = from[id[first + i]];
-  }
-  for (std::uint32_t i = first; i < first + count; ++i) id[i] = ids[id[i]];
+  std::uint32_t* const id = blocks.id.data() + first;
+  Real* to = blocks.fields.data() + std::size_t{Arrays::kFieldCount} * first;
+  Arrays::ForEachField(arrays, [&](const Real* field) {
+    for (std::uint32_t i = 0; i < count; ++i) *to++ = field[id[i]];
+  });
+  for (std::uint32_t i = 0; i < count; ++i) id[i] = arrays.id[id[i]];
 }
 
 }  // namespace
@@ -67,21 +66,11 @@ std::uint32_t FlattenNodes(std::unique_ptr<Branch> root, AlignedArray<TreeNode>&
 template <typename Real>
 void WriteLeaves(const GeometryView<Real>& geometry, Tree<Real>& tree) {
   using oneapi::tbb::blocked_range;
-  const SphereArrays<Real>& spheres = geometry.spheres;  // clang 14 captures no structured binding
-  const TriangleArrays<Real>& triangles = geometry.triangles;
-  const Real* const sphere_fields[4] = {spheres.center_x, spheres.center_y, spheres.center_z,
-                                        spheres.radius};
   const auto write = [&](std::uint32_t child) {
     if (child == kNoChild) return;
-    if (IsTriangleLeaf(child)) {
-      WriteLeaf(
-          child, 9, [&](int k) { return triangles.vertex[k / 3][k % 3]; }, triangles.id,
-          tree.triangles.data(), tree.triangle_id.data());
-    } else {
-      WriteLeaf(
-          child, 4, [&](int k) { return sphere_fields[k]; }, spheres.id, tree.spheres.data(),
-          tree.sphere_id.data());
-    }
+    ForEachKind(geometry, [&](const auto& arrays) {
+      if (arrays.kKind == LeafKind(child)) WriteLeaf(child, arrays, tree.of(arrays.kKind));
+    });
   };
   oneapi::tbb::parallel_for(blocked_range<std::uint32_t>(0, tree.node_count, 256),
                             [&](const blocked_range<std::uint32_t>& range) {

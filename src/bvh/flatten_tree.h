@@ -12,8 +12,8 @@ namespace sheaf::bvh {
 // number of nodes.
 std::uint32_t FlattenNodes(std::unique_ptr<Branch> root, AlignedArray<TreeNode>& nodes);
 
-// Writes the leaf blocks of a tree whose triangle_id and sphere_id hold indices into `geometry`,
-// and replaces these by ids.
+// Writes the leaf blocks of a tree whose ids are as yet indices into `geometry`, and replaces these
+// by ids.
 template <typename Real>
 void WriteLeaves(const GeometryView<Real>& geometry, Tree<Real>& tree);
 

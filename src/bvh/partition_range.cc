@@ -12,9 +12,26 @@ namespace {
 constexpr std::uint32_t kBlock = 2048;             // primitives that are moved by one task
 constexpr std::uint32_t kParallelSize = 1u << 16;  // ranges from here on are split in parallel
 
+// Up to kBlock primitives of each kind, counted without a branch.
+struct PackedCounts {
+  static constexpr std::uint32_t kBits = 64 / kKindCount;
+  static_assert(kBlock < 1ull << kBits);
+  std::uint64_t packed = 0;
+
+  void Add(PrimitiveKind kind, std::uint64_t count) { packed += count << kBits * IndexOf(kind); }
+  PrimitiveCounts Unpack() const {
+    PrimitiveCounts counts;
+    for (std::uint32_t k = 0; k < kKindCount; ++k) {
+      counts.of[k] = static_cast<std::uint32_t>(packed >> kBits * k & ((1ull << kBits) - 1));
+    }
+    return counts;
+  }
+};
+
 // What became of a block: its first `left` primitives go left.
 struct Block {
-  std::uint32_t begin, end, left, left_triangles;
+  std::uint32_t begin, end, left;
+  PackedCounts left_counts;
   Box4 left_centroids, right_centroids;
 };
 
@@ -42,7 +59,7 @@ void PartitionBlock(PrimitiveBox* boxes, const Split& split, Block& block) {
     right[right_count] = box;
     left_end += 1 - goes_right;
     right_count += goes_right;
-    block.left_triangles += (1 - goes_right) & IsTriangleTag(box.tag);
+    block.left_counts.Add(KindOf(box.tag), 1 - goes_right);
   }
   std::copy(right, right + right_count, boxes + left_end);
   block.left = left_end - block.begin;
@@ -84,26 +101,26 @@ void ForEach(std::uint32_t range_size, std::size_t count, const Body& body) {
   }
 }
 
-Halves CutAt(const Range& range, std::uint32_t middle, std::uint32_t left_triangles) {
+Halves CutAt(const Range& range, std::uint32_t middle, const PrimitiveCounts& left) {
   Halves halves;
-  halves.left = {range.begin, middle, range.first_triangle, left_triangles, {}, {}};
-  halves.right = {
-      middle, range.end, range.first_triangle + left_triangles, range.triangles - left_triangles,
-      {},     {}};
+  halves.left = {range.begin, middle, range.before, left, {}, {}};
+  halves.right = {middle, range.end, range.before, range.counts, {}, {}};
+  halves.right.before += left;
+  halves.right.counts -= left;
   return halves;
 }
 
 Halves PartitionByBin(PrimitiveBox* boxes, const Range& range, const Split& split) {
-  const auto finish = [&](std::uint32_t middle, std::uint32_t left_triangles) {
-    Halves halves = CutAt(range, middle, left_triangles);
+  const auto finish = [&](std::uint32_t middle, const PrimitiveCounts& left) {
+    Halves halves = CutAt(range, middle, left);
     halves.left.bounds = split.left;
     halves.right.bounds = split.right;
     return halves;
   };
   if (range.size() <= kBlock) {
-    Block block = {range.begin, range.end, 0, 0, {}, {}};
+    Block block = {range.begin, range.end, 0, {}, {}, {}};
     PartitionBlock(boxes, split, block);
-    Halves halves = finish(block.begin + block.left, block.left_triangles);
+    Halves halves = finish(block.begin + block.left, block.left_counts.Unpack());
     halves.left.centroids = block.left_centroids;
     halves.right.centroids = block.right_centroids;
     return halves;
@@ -111,14 +128,15 @@ Halves PartitionByBin(PrimitiveBox* boxes, const Range& range, const Split& spli
   std::vector<Block> blocks((range.size() + kBlock - 1) / kBlock);
   ForEach(range.size(), blocks.size(), [&](std::size_t i) {
     const std::uint32_t begin = range.begin + static_cast<std::uint32_t>(i) * kBlock;
-    blocks[i] = {begin, std::min(begin + kBlock, range.end), 0, 0, {}, {}};
+    blocks[i] = {begin, std::min(begin + kBlock, range.end), 0, {}, {}, {}};
     PartitionBlock(boxes, split, blocks[i]);
   });
-  std::uint32_t middle = range.begin, left_triangles = 0;
+  std::uint32_t middle = range.begin;
+  PrimitiveCounts left_counts;
   Box4 left, right;
   for (const Block& block : blocks) {
     middle += block.left;
-    left_triangles += block.left_triangles;
+    left_counts += block.left_counts.Unpack();
     left.Include(block.left_centroids);
     right.Include(block.right_centroids);
   }
@@ -127,7 +145,7 @@ Halves PartitionByBin(PrimitiveBox* boxes, const Range& range, const Split& spli
     const auto [a, b, count] = exchanges[i];
     std::swap_ranges(boxes + a, boxes + a + count, boxes + b);
   });
-  Halves halves = finish(middle, left_triangles);
+  Halves halves = finish(middle, left_counts);
   halves.left.centroids = left;
   halves.right.centroids = right;
   return halves;
@@ -146,11 +164,15 @@ void Measure(const PrimitiveBox* boxes, Range& range) {
 Halves PartitionRange(PrimitiveBox* boxes, const Range& range, const Split& split) {
   if (split.kind == SplitKind::kBin) return PartitionByBin(boxes, range, split);
   PrimitiveBox* const begin = boxes + range.begin;
-  const auto is_triangle = [](const PrimitiveBox& box) { return IsTriangleTag(box.tag) != 0; };
-  if (split.kind == SplitKind::kByKind) std::partition(begin, boxes + range.end, is_triangle);
-  const auto left_triangles =
-      static_cast<std::uint32_t>(std::count_if(begin, begin + split.left_count, is_triangle));
-  Halves halves = CutAt(range, range.begin + split.left_count, left_triangles);
+  if (split.kind == SplitKind::kByKind) {
+    const PrimitiveKind first = FirstKind(range);
+    std::partition(begin, boxes + range.end,
+                   [&](const PrimitiveBox& box) { return KindOf(box.tag) == first; });
+  }
+  PrimitiveCounts left;
+  std::for_each(begin, begin + split.left_count,
+                [&](const PrimitiveBox& box) { ++left[KindOf(box.tag)]; });
+  Halves halves = CutAt(range, range.begin + split.left_count, left);
   Measure(boxes, halves.left);
   Measure(boxes, halves.right);
   return halves;

@@ -3,37 +3,19 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "src/bvh/primitive_rules.h"
+#include "src/bvh/round_outward.h"
 
 namespace sheaf::bvh {
 namespace {
 
 constexpr float kMax = std::numeric_limits<float>::max();
 constexpr std::uint32_t kBlock = 4096;  // primitives a task; the result does not depend on it
-
-// Rounds down without a branch: half of all roundings would go the wrong way.
-float RoundDown(double x) {
-  const float f = static_cast<float>(x);
-  // As integers that order as floats do; what is above x is no +0, whose neighbour is -0.
-  std::int32_t bits = std::bit_cast<std::int32_t>(f);
-  bits ^= (bits >> 31) & 0x7fffffff;
-  bits -= static_cast<std::int32_t>(static_cast<double>(f) > x);
-  bits ^= (bits >> 31) & 0x7fffffff;
-  return std::bit_cast<float>(bits);
-}
-float RoundUp(double x) { return -RoundDown(-x); }
-
-// a + b, rounded up to double: the rounding error of a sum is a double (Knuth's TwoSum).
-double SumUp(double a, double b) {
-  const double sum = a + b, part = sum - a;
-  const double error = (a - (sum - part)) + (b - part);
-  return error > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity())
-                   : sum;  // false for the NaN of an infinite sum
-}
 
 // Stores what contains the primitive exactly, grown. Adding 0 turns -0 into 0.
 void StoreGrown(const float (&lower)[3], const float (&upper)[3], std::uint32_t tag,
@@ -58,6 +40,23 @@ BoxState StateOf(const Real* values, int count) {
     if (values[i] != values[i]) return BoxState::kNever;
   }
   return BoxState::kInfinite;
+}
+
+template <typename Arrays>
+BoxState MakeBoxOf(const Arrays& arrays, std::uint32_t index, PrimitiveBox& box) {
+  using Real = typename Arrays::Number;
+  Real values[Arrays::kFieldCount];
+  Real* next = values;
+  Arrays::ForEachField(arrays, [&](const Real* field) { *next++ = field[index]; });
+  if (const BoxState state = StateOf(values, Arrays::kFieldCount); state != BoxState::kFinite) {
+    return state;
+  }
+  float lower[3], upper[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    Rules<Arrays::kKind>::ExactBounds(values, axis, lower[axis], upper[axis]);
+  }
+  StoreGrown(lower, upper, MakeTag(Arrays::kKind, index), box);
+  return BoxState::kFinite;
 }
 
 // Fills boxes[0, n) of the primitives [first, first + n) without gaps; returns how many there are,
@@ -115,61 +114,35 @@ Error InfiniteCoordinate(const char* kind) {
 }  // namespace
 
 template <typename Real>
-BoxState MakeTriangleBox(const TriangleArrays<Real>& triangles, std::uint32_t index,
-                         PrimitiveBox& box) {
-  Real values[9];
-  for (int i = 0; i < 9; ++i) values[i] = triangles.vertex[i / 3][i % 3][index];
-  if (const BoxState state = StateOf(values, 9); state != BoxState::kFinite) return state;
-  float lower[3], upper[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const Real a = values[axis], b = values[3 + axis], c = values[6 + axis];
-    lower[axis] = RoundDown(static_cast<double>(std::min(std::min(a, b), c)));
-    upper[axis] = RoundUp(static_cast<double>(std::max(std::max(a, b), c)));
-  }
-  StoreGrown(lower, upper, MakeTag(0, index), box);
-  return BoxState::kFinite;
-}
-
-template <typename Real>
-BoxState MakeSphereBox(const SphereArrays<Real>& spheres, std::uint32_t index, PrimitiveBox& box) {
-  const Real values[4] = {spheres.center_x[index], spheres.center_y[index], spheres.center_z[index],
-                          spheres.radius[index]};
-  if (const BoxState state = StateOf(values, 4); state != BoxState::kFinite) return state;
-  const double radius = std::abs(static_cast<double>(values[3]));
-  float lower[3], upper[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double center = static_cast<double>(values[axis]);
-    lower[axis] = RoundDown(-SumUp(-center, radius));
-    upper[axis] = RoundUp(SumUp(center, radius));
-  }
-  StoreGrown(lower, upper, MakeTag(kSphereTag, index), box);
-  return BoxState::kFinite;
+BoxState MakeBox(const GeometryView<Real>& geometry, std::uint32_t place, PrimitiveBox& box) {
+  BoxState state = BoxState::kNever;
+  ForEachKind(geometry, [&](const auto& arrays) {
+    if (arrays.kKind == KindOf(place)) state = MakeBoxOf(arrays, IndexIn(place), box);
+  });
+  return state;
 }
 
 template <typename Real>
 Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<Real>& geometry) {
-  const SphereArrays<Real>& spheres = geometry.spheres;  // clang 14 captures no structured binding
-  const TriangleArrays<Real>& triangles = geometry.triangles;
   PrimitiveBoxes result;
-  result.boxes =
-      std::make_unique_for_overwrite<PrimitiveBox[]>(std::size_t{triangles.count} + spheres.count);
-  const std::int64_t triangle_boxes = FillKind(
-      triangles.count, result.boxes.get(), result,
-      [&](std::uint32_t i, PrimitiveBox& to) { return MakeTriangleBox(triangles, i, to); });
-  if (triangle_boxes < 0) return InfiniteCoordinate("triangle");
-  const std::int64_t sphere_boxes =
-      FillKind(spheres.count, result.boxes.get() + triangle_boxes, result,
-               [&](std::uint32_t i, PrimitiveBox& to) { return MakeSphereBox(spheres, i, to); });
-  if (sphere_boxes < 0) return InfiniteCoordinate("sphere");
-  result.triangles = static_cast<std::uint32_t>(triangle_boxes);
-  result.spheres = static_cast<std::uint32_t>(sphere_boxes);
+  std::size_t most = 0;
+  ForEachKind(geometry, [&](const auto& arrays) { most += arrays.count; });
+  result.boxes = std::make_unique_for_overwrite<PrimitiveBox[]>(most);
+  const char* infinite = nullptr;
+  ForEachKind(geometry, [&](const auto& arrays) {
+    if (infinite) return;
+    const std::int64_t made =
+        FillKind(arrays.count, result.boxes.get() + result.counts.total(), result,
+                 [&](std::uint32_t i, PrimitiveBox& to) { return MakeBoxOf(arrays, i, to); });
+    if (made < 0) infinite = arrays.kName;
+    result.counts[arrays.kKind] = static_cast<std::uint32_t>(made);
+  });
+  if (infinite) return InfiniteCoordinate(infinite);
   return result;
 }
 
-template BoxState MakeTriangleBox(const TriangleArrays<float>&, std::uint32_t, PrimitiveBox&);
-template BoxState MakeTriangleBox(const TriangleArrays<double>&, std::uint32_t, PrimitiveBox&);
-template BoxState MakeSphereBox(const SphereArrays<float>&, std::uint32_t, PrimitiveBox&);
-template BoxState MakeSphereBox(const SphereArrays<double>&, std::uint32_t, PrimitiveBox&);
+template BoxState MakeBox(const GeometryView<float>&, std::uint32_t, PrimitiveBox&);
+template BoxState MakeBox(const GeometryView<double>&, std::uint32_t, PrimitiveBox&);
 template Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<float>&);
 template Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<double>&);
 

@@ -23,32 +23,26 @@ struct alignas(16) PrimitiveBox {
 };
 static_assert(sizeof(PrimitiveBox) == 32);
 
-// Kind and index into the kind's arrays; tags order as spheres after triangles, then by index. As
-// lane 3 of a vector a tag is a normal float: sums of denormals are slow on some processors.
+// A primitive's place; tags order by kind, then by index. As lane 3 of a vector a tag is a normal
+// float: sums of denormals are slow on some processors.
 inline constexpr std::uint32_t kTagBase = 0x40000000u;
-inline constexpr std::uint32_t kSphereTag = kMaxTreePrimitives;
-constexpr std::uint32_t MakeTag(std::uint32_t kind, std::uint32_t index) {
-  return kTagBase | kind | index;
+constexpr std::uint32_t MakeTag(PrimitiveKind kind, std::uint32_t index) {
+  return kTagBase | MakePlace(kind, index);
 }
-constexpr std::uint32_t IsTriangleTag(std::uint32_t tag) { return ~tag >> 26 & 1; }
-constexpr std::uint32_t TagIndex(std::uint32_t tag) { return tag & (kMaxTreePrimitives - 1); }
 
 inline Box4 BoxOf(const PrimitiveBox& box) { return {Load4(box.lower), Load4(box.upper)}; }
 
 enum class BoxState { kFinite, kNever, kInfinite };
 
-// The box of one primitive. kNever: it has a NaN, kInfinite: an infinite coordinate; then `box` is
-// left alone.
+// The box of the primitive at `place`. kNever: it has a NaN, kInfinite: an infinite coordinate;
+// then `box` is left alone.
 template <typename Real>
-BoxState MakeTriangleBox(const TriangleArrays<Real>& triangles, std::uint32_t index,
-                         PrimitiveBox& box);
-template <typename Real>
-BoxState MakeSphereBox(const SphereArrays<Real>& spheres, std::uint32_t index, PrimitiveBox& box);
+BoxState MakeBox(const GeometryView<Real>& geometry, std::uint32_t place, PrimitiveBox& box);
 
 struct PrimitiveBoxes {
   std::unique_ptr<PrimitiveBox[]> boxes;
-  std::uint32_t triangles = 0, spheres = 0;  // that have a box, in the order of the input
-  Box4 bounds, centroids;                    // of the boxes and of the sums lower + upper
+  PrimitiveCounts counts;  // that have a box; they lie kind by kind, in the order of the input
+  Box4 bounds, centroids;  // of the boxes and of the sums lower + upper
 };
 
 // The boxes of all primitives without NaN. Fails with kUsage where a coordinate is infinite. Runs

@@ -2,10 +2,11 @@
 // place, the rest through a padded copy.
 #include <algorithm>
 
+#include "sheaf/geometry.h"
 #include "simd/kernels.h"
 #include "simd/query.h"
 #include "simd/streams.h"
-#include "src/bvh/geometry.h"
+#include "src/bvh/geometry_access.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf {
@@ -24,6 +25,20 @@ RayIntervals<float> Skip(RayIntervals<float> intervals, std::uint32_t first) {
   if (intervals.t_min) intervals.t_min += first;
   if (intervals.t_max) intervals.t_max += first;
   return intervals;
+}
+
+Coherence CoherenceOf(RayCoherence coherence) {
+  switch (coherence) {
+    case RayCoherence::kCommonOrigin:
+      return Coherence::kCommonOrigin;
+    case RayCoherence::kCoherent:
+      return Coherence::kCoherent;
+    case RayCoherence::kIncoherent:
+      return Coherence::kIncoherent;
+    case RayCoherence::kUnknown:
+      break;
+  }
+  return Coherence::kUnknown;
 }
 
 template <typename T>
@@ -132,22 +147,43 @@ void FindObjects(const Geometry& geometry, const std::uint32_t* primitive, std::
 }
 
 // At most kChunk rays, and whole vectors of them.
-void TraceChunk(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
-                const HitArrays& hits, const TraceOptions& options, const TraceKernels& kernels,
-                HitScratch& scratch) {
+void TraceChunk(const Geometry& geometry, const RayView<float>& rays,
+                const RayIntervals<float>& intervals, Coherence coherence, std::uint32_t count,
+                const HitArrays& hits, const TraceKernels& kernels, HitScratch& scratch) {
   const HitOutput<float> output = {hits.t ? hits.t : scratch.t, hits.u ? hits.u : scratch.u,
                                    hits.v ? hits.v : scratch.v,
                                    hits.primitive ? hits.primitive : scratch.primitive};
-  kernels.closest(geometry.tree(), rays, options.intervals, count, options.coherence, output);
+  kernels.closest(GeometryAccess::TreeOf(geometry), rays, intervals, count, coherence, output);
   if (hits.object) FindObjects(geometry, output.primitive, count, hits.object);
 }
 
 }  // namespace
 
-void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
+RayView<float> ViewOf(const RayArrays& rays) {
+  return {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
+          rays.direction_y, rays.direction_z, rays.source};
+}
+
+RayArrays ArraysOf(const RayView<float>& rays) {
+  return {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
+          rays.direction_y, rays.direction_z, rays.source};
+}
+
+RayIntervals<float> IntervalsOf(const TraceInterval& interval) {
+  return {interval.t_min, interval.t_max, interval.all_t_min, interval.all_t_max};
+}
+
+TraceInterval IntervalOf(const RayIntervals<float>& intervals) {
+  return {intervals.t_min, intervals.t_max, intervals.all_t_min, intervals.all_t_max};
+}
+
+void TraceClosest(const Geometry& geometry, const RayArrays& given, std::uint32_t count,
                   const HitArrays& hits, const TraceOptions& options) {
   HitScratch scratch;
   const TraceKernels kernels = KernelsOf(options.target);
+  const RayView<float> rays = ViewOf(given);
+  const RayIntervals<float> intervals = IntervalsOf(options.interval);
+  const Coherence coherence = CoherenceOf(options.coherence);
   const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
   const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
   const std::uint32_t step = has_all ? whole : kChunk;
@@ -157,17 +193,16 @@ void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uin
   };
   for (std::uint32_t first = 0; first < whole;) {
     const std::uint32_t n = std::min(step, whole - first);
-    TraceChunk(geometry, Skip(rays, first), n, hits_from(first),
-               {Skip(options.intervals, first), options.coherence, options.target}, kernels,
-               scratch);
+    TraceChunk(geometry, Skip(rays, first), Skip(intervals, first), coherence, n, hits_from(first),
+               kernels, scratch);
     first += n;
   }
   const std::uint32_t rest = count - whole;
   if (rest == 0) return;
-  const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
+  const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
   std::uint32_t object[kMaxLanes];
-  TraceChunk(geometry, padded.view(), rest, {.object = hits.object ? object : nullptr},
-             {padded.intervals(), options.coherence, options.target}, kernels, scratch);
+  TraceChunk(geometry, padded.view(), padded.intervals(), coherence, rest,
+             {.object = hits.object ? object : nullptr}, kernels, scratch);
   const auto copy = [&](const auto* from, auto* to) {
     if (to) std::copy(from, from + rest, to + whole);
   };
@@ -178,19 +213,20 @@ void TraceClosest(const Geometry& geometry, const RayView<float>& rays, std::uin
   copy(object, hits.object);
 }
 
-void TraceOccluded(const Geometry& geometry, const RayView<float>& rays, std::uint32_t count,
+void TraceOccluded(const Geometry& geometry, const RayArrays& given, std::uint32_t count,
                    std::uint32_t* occluded, const TraceOptions& options) {
   const TraceKernels kernels = KernelsOf(options.target);
+  const TreeView<float>& tree = GeometryAccess::TreeOf(geometry);
+  const RayView<float> rays = ViewOf(given);
+  const RayIntervals<float> intervals = IntervalsOf(options.interval);
+  const Coherence coherence = CoherenceOf(options.coherence);
   const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
-  if (whole > 0) {
-    kernels.occluded(geometry.tree(), rays, options.intervals, whole, options.coherence, occluded);
-  }
+  if (whole > 0) kernels.occluded(tree, rays, intervals, whole, coherence, occluded);
   const std::uint32_t rest = count - whole;
   if (rest == 0) return;
-  const PaddedRays padded(Skip(rays, whole), Skip(options.intervals, whole), rest);
+  const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
   std::uint32_t lanes[kMaxLanes];
-  kernels.occluded(geometry.tree(), padded.view(), padded.intervals(), rest, options.coherence,
-                   lanes);
+  kernels.occluded(tree, padded.view(), padded.intervals(), rest, coherence, lanes);
   std::copy(lanes, lanes + rest, occluded + whole);
 }
 

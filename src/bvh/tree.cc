@@ -1,5 +1,7 @@
 #include "src/bvh/tree.h"
 
+#include <algorithm>
+
 namespace sheaf {
 namespace {
 
@@ -12,22 +14,24 @@ std::size_t Bytes(const AlignedArray<T>& array) {
 
 template <typename Real>
 TreeView<Real> Tree<Real>::view() const {
-  return {nodes.data(),
-          node_count,
-          triangle_count,
-          sphere_count,
-          triangles.data(),
-          spheres.data(),
-          triangle_id.data(),
-          sphere_id.data(),
-          {lower[0], lower[1], lower[2]},
-          {upper[0], upper[1], upper[2]},
-          node_count <= 1};
+  TreeView<Real> view{};
+  view.nodes = nodes.data();
+  view.node_count = node_count;
+  std::transform(std::begin(blocks), std::end(blocks), view.blocks,
+                 [](const PrimitiveBlocks<Real>& kind) {
+                   return BlockView<Real>{kind.fields.data(), kind.id.data(), kind.count};
+                 });
+  std::copy_n(lower, 3, view.lower);
+  std::copy_n(upper, 3, view.upper);
+  view.skips_boxes = node_count <= 1;
+  return view;
 }
 
 template <typename Real>
 std::size_t Tree<Real>::bytes() const {
-  return Bytes(nodes) + Bytes(triangles) + Bytes(spheres) + Bytes(triangle_id) + Bytes(sphere_id);
+  std::size_t bytes = Bytes(nodes);
+  for (const PrimitiveBlocks<Real>& kind : blocks) bytes += Bytes(kind.fields) + Bytes(kind.id);
+  return bytes;
 }
 
 template struct Tree<float>;

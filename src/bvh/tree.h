@@ -9,15 +9,24 @@
 
 namespace sheaf {
 
+// The primitives of one kind by leaves: see BlockView.
+template <typename Real>
+struct PrimitiveBlocks {
+  AlignedArray<Real> fields;       // with room for a vector more
+  AlignedArray<std::uint32_t> id;  // the same
+  std::uint32_t count = 0;
+};
+
 // A tree as BuildTree leaves it; see TreeView. Needs none of the arrays it was built from.
 template <typename Real>
 struct Tree {
   AlignedArray<TreeNode> nodes;
-  AlignedArray<Real> triangles, spheres;               // leaf blocks, with room for a vector more
-  AlignedArray<std::uint32_t> triangle_id, sphere_id;  // the same
-  std::uint32_t node_count = 0, triangle_count = 0, sphere_count = 0;
+  PrimitiveBlocks<Real> blocks[kKindCount];  // by kind
+  std::uint32_t node_count = 0;
   float lower[3], upper[3];
 
+  PrimitiveBlocks<Real>& of(PrimitiveKind kind) { return blocks[IndexOf(kind)]; }
+  const PrimitiveBlocks<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }
   TreeView<Real> view() const;
   std::size_t bytes() const;  // all arrays
 };

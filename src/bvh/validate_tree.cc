@@ -40,15 +40,14 @@ std::string At(std::uint32_t node, std::uint32_t slot) {
 
 // The primitives of one kind as the tree and as the input have them.
 template <typename Real>
-struct Kind {
+struct Primitives {
+  PrimitiveKind kind;
   const char* name;
-  int field_count;
-  const Real* fields[9];
+  std::uint32_t field_count;
+  const Real* fields[kMaxFields];
   const std::uint32_t* input_id;
   std::uint32_t input_count;
-  const Real* blocks;
-  const std::uint32_t* id;
-  std::uint32_t count;
+  BlockView<Real> blocks;
 
   std::vector<std::uint32_t> by_id;   // positions in the input, sorted by id
   std::vector<std::uint8_t> is_used;  // by position in the input
@@ -76,30 +75,17 @@ class Validator {
  public:
   Validator(const TreeView<Real>& tree, const GeometryView<Real>& geometry)
       : tree_(tree), geometry_(geometry) {
-    const auto& [spheres, triangles] = geometry;
-    triangles_ = {"triangle",
-                  9,
-                  {},
-                  triangles.id,
-                  triangles.count,
-                  tree.triangles,
-                  tree.triangle_id,
-                  tree.triangle_count,
-                  {},
-                  {}};
-    for (int k = 0; k < 9; ++k) triangles_.fields[k] = triangles.vertex[k / 3][k % 3];
-    spheres_ = {"sphere",
-                4,
-                {spheres.center_x, spheres.center_y, spheres.center_z, spheres.radius},
-                spheres.id,
-                spheres.count,
-                tree.spheres,
-                tree.sphere_id,
-                tree.sphere_count,
-                {},
-                {}};
-    triangles_.Prepare();
-    spheres_.Prepare();
+    ForEachKind(geometry, [&](const auto& arrays) {
+      Primitives<Real>& kind = kinds_[IndexOf(arrays.kKind)];
+      kind.kind = arrays.kKind;
+      kind.name = arrays.kName;
+      arrays.ForEachField(arrays,
+                          [&](const Real* field) { kind.fields[kind.field_count++] = field; });
+      kind.input_id = arrays.id;
+      kind.input_count = arrays.count;
+      kind.blocks = tree.of(arrays.kKind);
+      kind.Prepare();
+    });
   }
 
   std::string FindDefect() {
@@ -116,8 +102,8 @@ class Validator {
     for (std::uint32_t i = 0; i < tree_.node_count; ++i) {
       if (level_[i] == 0) return "node " + std::to_string(i) + " is no node's child";
     }
-    for (const Kind<Real>* kind : {&triangles_, &spheres_}) {
-      if (std::string defect = CheckComplete(*kind); !defect.empty()) return defect;
+    for (const Primitives<Real>& kind : kinds_) {
+      if (std::string defect = CheckComplete(kind); !defect.empty()) return defect;
     }
     return "";
   }
@@ -190,18 +176,21 @@ class Validator {
   }
 
   std::string CheckLeaf(std::uint32_t leaf, const Bounds& bounds) {
-    Kind<Real>& kind = IsTriangleLeaf(leaf) ? triangles_ : spheres_;
+    if (IndexOf(LeafKind(leaf)) >= kKindCount) return "a leaf of no kind";
+    Primitives<Real>& kind = kinds_[IndexOf(LeafKind(leaf))];
     const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
-    if (first + count > kind.count) return std::string("a leaf beyond the last ") + kind.name;
-    const Real* const block =
-        kind.blocks + std::size_t{first} * static_cast<std::size_t>(kind.field_count);
+    if (first + count > kind.blocks.count) {
+      return std::string("a leaf beyond the last ") + kind.name;
+    }
+    const Real* const block = kind.blocks.fields + std::size_t{first} * kind.field_count;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::string name = std::string(kind.name) + " " + std::to_string(kind.id[first + i]);
-      const std::uint32_t input = kind.Find(kind.id[first + i]);
+      const std::uint32_t id = kind.blocks.id[first + i];
+      const std::string name = std::string(kind.name) + " " + std::to_string(id);
+      const std::uint32_t input = kind.Find(id);
       if (input == kind.input_count) return "no " + name;
       if (kind.is_used[input]++) return name + " is there twice";
-      for (int k = 0; k < kind.field_count; ++k) {
-        const Real* const stored = block + static_cast<std::size_t>(k) * count + i;
+      for (std::uint32_t k = 0; k < kind.field_count; ++k) {
+        const Real* const stored = block + std::size_t{k} * count + i;
         if (std::memcmp(stored, kind.fields[k] + input, sizeof(Real)) != 0) {
           return name + " has another field " + std::to_string(k);
         }
@@ -213,7 +202,7 @@ class Validator {
     return "";
   }
 
-  std::string CheckComplete(const Kind<Real>& kind) const {
+  std::string CheckComplete(const Primitives<Real>& kind) const {
     std::uint32_t used = 0;
     for (std::uint32_t i = 0; i < kind.input_count; ++i) {
       PrimitiveBox box;
@@ -222,19 +211,18 @@ class Validator {
         return std::string(kind.name) + " " + std::to_string(kind.input_id[i]) + " is missing";
       }
     }
-    if (used == kind.count) return "";
-    return "a count of " + std::to_string(kind.count) + ", but " + std::to_string(used) + " " +
-           kind.name + "s in leaves";
+    if (used == kind.blocks.count) return "";
+    return "a count of " + std::to_string(kind.blocks.count) + ", but " + std::to_string(used) +
+           " " + kind.name + "s in leaves";
   }
 
-  BoxState BoxOf(const Kind<Real>& kind, std::uint32_t input, PrimitiveBox& box) const {
-    return &kind == &triangles_ ? bvh::MakeTriangleBox(geometry_.triangles, input, box)
-                                : bvh::MakeSphereBox(geometry_.spheres, input, box);
+  BoxState BoxOf(const Primitives<Real>& kind, std::uint32_t input, PrimitiveBox& box) const {
+    return bvh::MakeBox(geometry_, MakePlace(kind.kind, input), box);
   }
 
   TreeView<Real> tree_;
   GeometryView<Real> geometry_;
-  Kind<Real> triangles_, spheres_;
+  Primitives<Real> kinds_[kKindCount] = {};
   std::vector<std::uint8_t> level_;  // of each node; 0: not reached
   std::vector<std::uint32_t> pending_;
 };

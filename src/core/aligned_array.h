@@ -23,8 +23,13 @@ class AlignedArray {
 
   // Drops what it held. Throws std::bad_alloc where memory runs out.
   void Allocate(std::size_t size) {
+    AllocateForOverwrite(size, size);
+  }
+  // The same, but only the last `padding` elements start as zeros: the others are written before
+  // they are read.
+  void AllocateForOverwrite(std::size_t size, std::size_t padding) {
     data_.reset(static_cast<T*>(::operator new(size * sizeof(T), std::align_val_t(kAlignment))));
-    std::memset(static_cast<void*>(data_.get()), 0, size * sizeof(T));
+    std::memset(static_cast<void*>(data_.get() + (size - padding)), 0, padding * sizeof(T));
     size_ = size;
   }
 

@@ -16,7 +16,7 @@ std::optional<std::uint32_t> ObjectAt(const Scene& scene, const Camera& camera, 
       scalar::CameraRay(lens, static_cast<float>(x), static_cast<float>(y), 0.5f, 0.5f);
   const scalar::Hit<float> hit = scalar::TraceClosest(compiled.geometry(), ray);
   if (hit.primitive == kNoPrimitive) return std::nullopt;
-  return compiled.object_of_primitive[hit.primitive];
+  return compiled.objects.object_of_primitive[hit.primitive];
 }
 
 }  // namespace sheaf

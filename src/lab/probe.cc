@@ -4,21 +4,16 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "simd/query.h"
-#include "simd/streams.h"
 #include "simd/tree.h"
-#include "src/bvh/geometry.h"
-#include "src/core/has_area.h"
 #include "src/core/running_target.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf::stress {
 namespace {
-
-constexpr float kNever = std::numeric_limits<float>::quiet_NaN();
 
 // Rays as the arrays that the kernels take.
 struct FlatRays {
@@ -35,7 +30,7 @@ struct FlatRays {
       source.push_back(ray.source);
     }
   }
-  RayView<float> view() const {
+  RayArrays view() const {
     return {number[0].data(), number[1].data(), number[2].data(), number[3].data(),
             number[4].data(), number[5].data(), source.data()};
   }
@@ -64,8 +59,8 @@ void CheckKernels(Report& report, Target target, const Geometry& geometry,
   std::vector<std::uint32_t> primitive(count), occluded(count);
   TraceOptions options;
   options.target = target;
-  options.intervals.t_min = flat.t_min.data();
-  options.intervals.t_max = flat.t_max.data();
+  options.interval.t_min = flat.t_min.data();
+  options.interval.t_max = flat.t_max.data();
   TraceClosest(geometry, flat.view(), count,
                {.t = t.data(), .primitive = primitive.data(), .u = u.data(), .v = v.data()},
                options);
@@ -117,6 +112,18 @@ void Shapes::AddSphere(Vec center, float radius) {
   spheres.insert(spheres.end(), {center.x, center.y, center.z, radius});
 }
 
+void Shapes::AddMore(PrimitiveKind kind, std::initializer_list<float> fields) {
+  more[IndexOf(kind)].insert(more[IndexOf(kind)].end(), fields);
+}
+
+std::uint32_t Shapes::primitive_count() const {
+  std::size_t count = indices.size() / 3 + spheres.size() / 4;
+  for (std::uint32_t k = 0; k < kKindCount; ++k) {
+    count += more[k].size() / FieldCountOf(static_cast<PrimitiveKind>(k));
+  }
+  return static_cast<std::uint32_t>(count);
+}
+
 Vec Shapes::vertex(std::uint32_t i) const {
   return {vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]};
 }
@@ -151,51 +158,19 @@ void AddSphereMesh(Shapes& shapes, Vec center, float radius, std::uint32_t rings
   }
 }
 
-FlatShapes::FlatShapes(const Shapes& shapes) {
-  std::uint32_t id = 0;
-  for (std::size_t i = 0; i < shapes.indices.size(); i += 3) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vec position = shapes.vertex(shapes.indices[i + corner]);
-      vertex[corner][0].push_back(position.x);
-      vertex[corner][1].push_back(position.y);
-      vertex[corner][2].push_back(position.z);
-    }
-    // Without area, or with radius 0, a primitive is NaN to the specification, as the scene
-    // compiler makes it.
-    const std::size_t last = triangle_id.size();
-    double exact[3][3];
-    for (int corner = 0; corner < 3; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) exact[corner][axis] = vertex[corner][axis][last];
-    }
-    if (!HasArea(exact)) vertex[0][0].back() = kNever;
-    triangle_id.push_back(id++);
+GeometryInput InputOf(const Shapes& shapes) {
+  GeometryInput input;
+  input.AddTriangles(shapes.vertices, shapes.indices);
+  input.AddSpheres(shapes.spheres);
+  for (std::uint32_t k = 0; k < kKindCount; ++k) {
+    if (shapes.more[k].empty()) continue;
+    GeometryAccess::Add(input, static_cast<PrimitiveKind>(k), shapes.more[k]);
   }
-  for (std::size_t i = 0; i < shapes.spheres.size(); i += 4) {
-    for (std::size_t field = 0; field < 4; ++field) {
-      sphere[field].push_back(shapes.spheres[i + field]);
-    }
-    if (sphere[3].back() == 0) sphere[3].back() = kNever;
-    sphere_id.push_back(id++);
-  }
+  return input;
 }
 
-GeometryView<float> FlatShapes::view() const {
-  GeometryView<float> geometry{};
-  geometry.spheres = {static_cast<std::uint32_t>(sphere_id.size()),
-                      sphere[0].data(),
-                      sphere[1].data(),
-                      sphere[2].data(),
-                      sphere[3].data(),
-                      sphere_id.data()};
-  geometry.triangles.count = static_cast<std::uint32_t>(triangle_id.size());
-  for (int corner = 0; corner < 3; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      geometry.triangles.vertex[corner][axis] = vertex[corner][axis].data();
-    }
-  }
-  geometry.triangles.id = triangle_id.data();
-  return geometry;
-}
+FlatShapes::FlatShapes(const Shapes& shapes)
+    : flat_(std::move(GeometryAccess::Flatten(InputOf(shapes), 1)).value()) {}
 
 bool IsHit(const Hit& hit) { return hit.primitive != kNoPrimitive; }
 
@@ -211,10 +186,7 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
                                  const std::vector<Ray>& given, Oracle oracle) {
   std::vector<Ray> rays = given;
   if (report.replay()) rays.push_back(*report.replay());
-  GeometryInput input;
-  input.AddTriangles(shapes.vertices, shapes.indices);
-  input.AddSpheres(shapes.spheres);
-  const Result<Geometry> geometry = Geometry::Build(input);
+  const Result<Geometry> geometry = Geometry::Build(InputOf(shapes));
   if (!geometry) {
     report.Expect(false, geometry.error().message);
     return std::vector<Hit>(given.size());
@@ -223,7 +195,7 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
   const FlatRays flat_rays(rays);
   std::vector<Hit> expected;
   for (const Ray& ray : rays) {
-    const Hit by_tree = scalar::TraceClosest(geometry.value().tree(), ray);
+    const Hit by_tree = scalar::TraceClosest(GeometryAccess::TreeOf(geometry.value()), ray);
     expected.push_back(oracle == Oracle::kTreeOnly ? by_tree
                                                    : scalar::TraceClosest(flat.view(), ray));
     report.Expect(SameHit(by_tree, expected.back()),

@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "sheaf/geometry.h"
 #include "sheaf/target.h"
 #include "simd/tree.h"
+#include "src/bvh/geometry_access.h"
 #include "src/lab/stress.h"
 #include "src/scalar/trace.h"
 
@@ -17,35 +20,39 @@ namespace sheaf::stress {
 using Hit = scalar::Hit<float>;
 using Vec = Vec3<float>;
 
-// Triangles first, then spheres: the order of primitive ids.
+// Triangles first, then spheres, then other kinds: the order of primitive ids.
 struct Shapes {
-  std::vector<float> vertices;         // x, y, z
-  std::vector<std::uint32_t> indices;  // three a triangle
-  std::vector<float> spheres;          // center, radius
+  std::vector<float> vertices;          // x, y, z
+  std::vector<std::uint32_t> indices;   // three a triangle
+  std::vector<float> spheres;           // center, radius
+  std::vector<float> more[kKindCount];  // fields of other kinds, in the order of their arrays
 
   std::uint32_t AddVertex(Vec position);
   void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void AddTriangle(Vec a, Vec b, Vec c);
   void AddQuad(Vec a, Vec b, Vec c, Vec d);  // as two triangles that share vertices
   void AddSphere(Vec center, float radius);
+  void AddMore(PrimitiveKind kind, std::initializer_list<float> fields);
   Vec vertex(std::uint32_t i) const;
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size() / 3); }
-  std::uint32_t primitive_count() const {
-    return static_cast<std::uint32_t>(indices.size() / 3 + spheres.size() / 4);
-  }
+  std::uint32_t primitive_count() const;
 };
 
 // A closed sphere of triangles, `rings` from pole to pole and twice as many around.
 void AddSphereMesh(Shapes& shapes, Vec center, float radius, std::uint32_t rings);
 
 // The shapes as the arrays that src/scalar reads.
-struct FlatShapes {
-  std::vector<float> vertex[3][3], sphere[4];
-  std::vector<std::uint32_t> triangle_id, sphere_id;
-
+class FlatShapes {
+ public:
   explicit FlatShapes(const Shapes& shapes);
-  GeometryView<float> view() const;
+  GeometryView<float> view() const { return flat_.arrays.view(); }
+
+ private:
+  FlatInput flat_;
 };
+
+// The shapes must outlive it.
+GeometryInput InputOf(const Shapes& shapes);
 
 // The nearest hit of each ray, by src/scalar over every primitive. `report` learns where the
 // baseline's tree or a kernel of any target has other bits, nearest hit and occlusion alike.

@@ -13,7 +13,7 @@
 #include "src/lab/ray_cases.h"
 #include "src/lab/stress_cases.h"
 #include "src/scalar/shadow_ray.h"
-#include "src/scalar/surface.h"
+#include "src/scalar/primitives.h"
 
 namespace sheaf::stress {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "simd/query.h"
-#include "src/bvh/geometry.h"
+#include "sheaf/geometry.h"
 #include "src/lab/probe.h"
 #include "src/lab/ray_cases.h"
 #include "src/lab/stress_cases.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "src/bvh/geometry.h"
+#include "sheaf/geometry.h"
 #include "src/lab/probe.h"
 #include "src/lab/ray_cases.h"
 #include "src/lab/stress_cases.h"

@@ -6,12 +6,19 @@
 #include "simd/query.h"
 
 namespace sheaf {
+namespace {
+
+std::uint32_t KeyOf(const PrimitiveInfo& info) {
+  return 1 + kKindCount * info.material + static_cast<std::uint32_t>(info.kind());
+}
+
+}  // namespace
 
 void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
                     std::span<const PrimitiveInfo> primitives) {
   if (ray_.size() < StreamCapacity(count)) {
     ray_.Allocate(StreamCapacity(count));
-    local_.Allocate(StreamCapacity(count));
+    index_.Allocate(StreamCapacity(count));
     primitive_.Allocate(StreamCapacity(count));
   }
   // Neighbouring rays mostly hit the same primitive, so that a run of them costs one look-up.
@@ -23,8 +30,8 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     Run run{first, i - first, primitive, 0, 0};
     if (primitive != kNoPrimitive) {
       const PrimitiveInfo& info = primitives[primitive];
-      run.key = 1 + 2 * info.material + (info.local & kTriangleBit ? 1 : 0);
-      run.local = info.local & ~kTriangleBit;
+      run.key = KeyOf(info);
+      run.index = info.index();
     }
     if (counts_[run.key] == 0 && run.key != 0) keys_.push_back(run.key);
     counts_[run.key] += run.size;
@@ -39,9 +46,9 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     const std::uint32_t size = counts_[key];
     if (key > 0) {
       bins_.push_back(
-          {(key - 1) / 2,
-           static_cast<ShapeKind>((key - 1) % 2),
-           {ray_.data() + first, local_.data() + first, primitive_.data() + first, size}});
+          {(key - 1) / kKindCount,
+           static_cast<PrimitiveKind>((key - 1) % kKindCount),
+           {ray_.data() + first, index_.data() + first, primitive_.data() + first, size}});
     }
     counts_[key] = first;
     first += size;
@@ -51,7 +58,7 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
     counts_[run.key] += run.size;
     std::iota(ray_.data() + at, ray_.data() + at + run.size, run.first);
     std::fill_n(primitive_.data() + at, run.size, run.primitive);
-    std::fill_n(local_.data() + at, run.size, run.local);
+    std::fill_n(index_.data() + at, run.size, run.index);
   }
   // Only what was counted is cleared: most scenes have more materials than a stream meets.
   for (const std::uint32_t key : keys_) counts_[key] = 0;

@@ -5,27 +5,26 @@
 #include <span>
 #include <vector>
 
+#include "simd/primitives.h"
 #include "simd/streams.h"
 #include "src/core/aligned_array.h"
 #include "src/stream/frame_view.h"
 
 namespace sheaf {
 
-enum class ShapeKind : std::uint32_t { kSphere, kTriangle };
-
-// The hits of one material on one kind of shape, in the order of their rays.
+// The hits of one material on one kind of primitive, in the order of their rays.
 struct HitBin {
   std::uint32_t material;
-  ShapeKind shape;
+  PrimitiveKind kind;
   HitBatch batch;
 };
 
-// A stable counting sort by material and shape. Keeps its arrays from stream to stream.
+// A stable counting sort by material and kind. Keeps its arrays from stream to stream.
 class HitBinner {
  public:
-  explicit HitBinner(std::size_t material_count) : counts_(2 * material_count + 1) {}
+  explicit HitBinner(std::size_t material_count) : counts_(kKindCount * material_count + 1) {}
 
-  // Valid until the next call. `primitives` tells a hit primitive's material and shape.
+  // Valid until the next call. `primitives` tells a hit primitive's material and kind.
   void Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
            std::span<const PrimitiveInfo> primitives);
 
@@ -35,13 +34,13 @@ class HitBinner {
  private:
   // Consecutive rays that hit the same primitive.
   struct Run {
-    std::uint32_t first, size, primitive, key, local;
+    std::uint32_t first, size, primitive, key, index;
   };
 
-  std::vector<std::uint32_t> counts_;  // by key: 0 for misses, then 1 + 2 * material + shape
+  std::vector<std::uint32_t> counts_;  // by key: see KeyOf; 0 for misses
   std::vector<std::uint32_t> keys_;    // that this stream met, ascending; 0 always
   std::vector<Run> runs_;
-  AlignedArray<std::uint32_t> ray_, local_, primitive_;
+  AlignedArray<std::uint32_t> ray_, index_, primitive_;
   std::vector<HitBin> bins_;
   std::span<const std::uint32_t> missed_rays_;
 };

@@ -10,7 +10,6 @@
 #include "simd/shading.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
-#include "src/core/has_area.h"
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
@@ -34,164 +33,6 @@ glm::dvec3 CrossOf(const glm::dvec3& a, const glm::dvec3& b) {
   return ToGlm(Cross(ToVec3(a), ToVec3(b)));
 }
 double LengthOf(const glm::dvec3& v) { return std::sqrt(Dot(ToVec3(v), ToVec3(v))); }
-
-struct Bounds {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()};
-  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-
-  void Include(const glm::dvec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-};
-
-// How many primitives there are, and what of them some material or mesh asks for.
-struct Inventory {
-  std::uint32_t spheres = 0, triangles = 0;
-  bool has_coordinates = false, has_normals = false, has_colours = false;
-};
-
-Inventory TakeInventory(const Scene& scene) {
-  Inventory inventory;
-  for (const Material& material : scene.materials) {
-    inventory.has_coordinates |= !std::holds_alternative<Colour>(material.base_colour);
-  }
-  for (const Object& object : scene.objects) {
-    if (std::holds_alternative<Sphere>(object.shape)) ++inventory.spheres;
-    if (std::holds_alternative<Quad>(object.shape)) inventory.triangles += 2;
-    if (std::holds_alternative<Triangle>(object.shape)) ++inventory.triangles;
-    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
-      inventory.triangles += static_cast<std::uint32_t>(mesh->triangles.size());
-      inventory.has_normals |= !mesh->normals.empty();
-      inventory.has_colours |= !mesh->colours.empty();
-    }
-  }
-  return inventory;
-}
-
-template <typename Real, std::size_t N>
-void AllocateVertices(AlignedArray<Real> (&values)[3][N], std::uint32_t count) {
-  for (auto& vertex : values) {
-    for (auto& axis : vertex) axis.Allocate(StreamCapacity(count));
-  }
-}
-
-// Fills the arrays of one CompiledScene in the order of the objects.
-template <typename Real>
-class GeometryWriter {
- public:
-  explicit GeometryWriter(CompiledScene<Real>& compiled) : compiled_(compiled) {}
-
-  void Allocate(const Inventory& inventory) {
-    inventory_ = inventory;
-    const std::uint32_t spheres = inventory.spheres, triangles = inventory.triangles;
-    for (auto& axis : compiled_.sphere_center) axis.Allocate(StreamCapacity(spheres));
-    compiled_.sphere_radius.Allocate(StreamCapacity(spheres));
-    compiled_.sphere_id.Allocate(StreamCapacity(spheres));
-    AllocateVertices(compiled_.triangle_vertex, triangles);
-    if (inventory.has_coordinates) AllocateVertices(compiled_.triangle_uv, triangles);
-    if (inventory.has_normals) AllocateVertices(compiled_.triangle_normal, triangles);
-    if (inventory.has_colours) AllocateVertices(compiled_.triangle_colour, triangles);
-    compiled_.triangle_id.Allocate(StreamCapacity(triangles));
-    compiled_.primitives.reserve(std::size_t{spheres} + triangles);
-    compiled_.object_of_primitive.reserve(std::size_t{spheres} + triangles);
-  }
-
-  void StartObject(std::uint32_t object, std::uint32_t material) {
-    object_ = object;
-    material_ = material;
-  }
-
-  void Add(const Sphere& sphere) {
-    const std::uint32_t i = compiled_.sphere_count++;
-    for (int axis = 0; axis < 3; ++axis) {
-      compiled_.sphere_center[axis][i] = static_cast<Real>(sphere.center[axis]);
-    }
-    const Real radius = static_cast<Real>(sphere.radius);
-    compiled_.sphere_radius[i] = radius > 0 ? radius : kNever;
-    compiled_.sphere_id[i] = NewId(i);
-    bounds_.Include(sphere.center - sphere.radius);
-    bounds_.Include(sphere.center + sphere.radius);
-  }
-
-  void Add(const Triangle& triangle) {
-    const std::uint32_t i = AddVertices(triangle.vertices);
-    for (int vertex = 0; vertex < 3; ++vertex) {
-      if (inventory_.has_coordinates) Put(compiled_.triangle_uv, vertex, i, triangle.uv[vertex]);
-      if (inventory_.has_normals) Put(compiled_.triangle_normal, vertex, i, glm::vec3(0));
-      if (inventory_.has_colours) Put(compiled_.triangle_colour, vertex, i, glm::vec3(1));
-    }
-  }
-
-  void Add(const Mesh& mesh) {
-    for (const auto& corners : mesh.triangles) {
-      const std::uint32_t i =
-          AddVertices({Vec3d(mesh.positions[corners[0]]), Vec3d(mesh.positions[corners[1]]),
-                       Vec3d(mesh.positions[corners[2]])});
-      for (int vertex = 0; vertex < 3; ++vertex) {
-        const std::uint32_t from = corners[static_cast<std::size_t>(vertex)];
-        if (inventory_.has_coordinates) {
-          Put(compiled_.triangle_uv, vertex, i,
-              mesh.uv.empty() ? glm::dvec2(Triangle{}.uv[static_cast<std::size_t>(vertex)])
-                              : glm::dvec2(mesh.uv[from]));
-        }
-        if (inventory_.has_normals) {
-          Put(compiled_.triangle_normal, vertex, i,
-              mesh.normals.empty() ? glm::vec3(0) : mesh.normals[from]);
-        }
-        if (inventory_.has_colours) {
-          Put(compiled_.triangle_colour, vertex, i,
-              mesh.colours.empty() ? glm::vec3(1) : mesh.colours[from]);
-        }
-      }
-    }
-  }
-
-  void Add(const Quad& quad) {
-    const auto& c = quad.corners;
-    Add(Triangle{{c[0], c[1], c[2]}, {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1)}});
-    Add(Triangle{{c[0], c[2], c[3]}, {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(0, 1)}});
-  }
-
-  const Bounds& bounds() const { return bounds_; }
-
- private:
-  static constexpr Real kNever = std::numeric_limits<Real>::quiet_NaN();
-
-  // A triangle with nothing but its vertices; returns its place.
-  std::uint32_t AddVertices(const std::array<Vec3d, 3>& vertices) {
-    const std::uint32_t i = compiled_.triangle_count++;
-    double rounded[3][3];
-    for (int vertex = 0; vertex < 3; ++vertex) {
-      const auto& v = vertices[static_cast<std::size_t>(vertex)];
-      for (int axis = 0; axis < 3; ++axis) rounded[vertex][axis] = static_cast<Real>(v[axis]);
-      bounds_.Include(v);
-      Put(compiled_.triangle_vertex, vertex, i, v);
-    }
-    if (!HasArea(rounded)) compiled_.triangle_vertex[0][0][i] = kNever;
-    compiled_.triangle_id[i] = NewId(i | kTriangleBit);
-    return i;
-  }
-
-  template <std::size_t N, typename Value>
-  static void Put(AlignedArray<Real> (&values)[3][N], int vertex, std::uint32_t i,
-                  const Value& value) {
-    for (int axis = 0; axis < static_cast<int>(N); ++axis) {
-      values[vertex][axis][i] = static_cast<Real>(value[axis]);
-    }
-  }
-
-  std::uint32_t NewId(std::uint32_t local) {
-    compiled_.primitives.push_back({local, material_});
-    compiled_.object_of_primitive.push_back(object_);
-    return static_cast<std::uint32_t>(compiled_.primitives.size() - 1);
-  }
-
-  CompiledScene<Real>& compiled_;
-  Inventory inventory_;
-  Bounds bounds_;
-  std::uint32_t object_ = 0, material_ = 0;
-};
 
 template <typename Real>
 void StoreBaseColour(BaseColour kind, const Checker& checker, MaterialData<Real>& data) {
@@ -264,19 +105,20 @@ void CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
 constexpr double kLeastConeRim = 0.001;
 
 // The largest distance from `p` to a point of the box.
-double Reach(const Bounds& bounds, const glm::dvec3& p) {
+double Reach(const PointBounds& bounds, const glm::dvec3& p) {
   return LengthOf(glm::max(glm::abs(bounds.low - p), glm::abs(bounds.high - p)));
 }
 
 template <typename Real>
-void StoreSource(const DirectionalLight& sun, const Bounds& /*bounds*/, LightData<Real>& data) {
+void StoreSource(const DirectionalLight& sun, const PointBounds& /*bounds*/,
+                 LightData<Real>& data) {
   data.kind = LightKind::kDirectional;
   Store(-Unit(sun.direction), data.vector);
   data.falloff[0] = 1;
 }
 
 template <typename Real>
-void StoreSource(const PointLight& point, const Bounds& bounds, LightData<Real>& data) {
+void StoreSource(const PointLight& point, const PointBounds& bounds, LightData<Real>& data) {
   const double diameter = LengthOf(bounds.high - bounds.low);
   const bool is_near =
       Reach(bounds, point.position) <= kMaxLightDiameters * diameter;  // false without objects
@@ -297,7 +139,8 @@ void StoreSource(const PointLight& point, const Bounds& bounds, LightData<Real>&
 }
 
 template <typename Real>
-LightData<Real> CompileLight(const Light& light, const Settings& settings, const Bounds& bounds) {
+LightData<Real> CompileLight(const Light& light, const Settings& settings,
+                             const PointBounds& bounds) {
   LightData<Real> data{};
   data.casts_shadows = light.casts_shadows;
   Store(light.colour * (light.intensity * settings.exposure), data.rgb);
@@ -309,40 +152,10 @@ LightData<Real> CompileLight(const Light& light, const Settings& settings, const
 
 }  // namespace
 
-template <typename Real, std::size_t N>
-void ShowVertices(const AlignedArray<Real> (&values)[3][N], const Real* (&view)[3][N]) {
-  for (int vertex = 0; vertex < 3; ++vertex) {
-    for (std::size_t axis = 0; axis < N; ++axis) view[vertex][axis] = values[vertex][axis].data();
-  }
-}
-
-template <typename Real>
-GeometryView<Real> CompiledScene<Real>::geometry() const {
-  GeometryView<Real> view{};
-  view.spheres = {sphere_count,
-                  sphere_center[0].data(),
-                  sphere_center[1].data(),
-                  sphere_center[2].data(),
-                  sphere_radius.data(),
-                  sphere_id.data()};
-  view.triangles.count = triangle_count;
-  ShowVertices(triangle_vertex, view.triangles.vertex);
-  ShowVertices(triangle_uv, view.triangles.uv);
-  ShowVertices(triangle_normal, view.triangles.normal);
-  ShowVertices(triangle_colour, view.triangles.colour);
-  view.triangles.id = triangle_id.data();
-  return view;
-}
-
 template <typename Real>
 CompiledScene<Real> CompileScene(const Scene& scene) {
   CompiledScene<Real> compiled;
-  GeometryWriter<Real> writer(compiled);
-  writer.Allocate(TakeInventory(scene));
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    writer.StartObject(i, scene.objects[i].material);
-    std::visit([&](const auto& shape) { writer.Add(shape); }, scene.objects[i].shape);
-  }
+  const PointBounds bounds = CompileGeometry(scene, compiled.objects);
   for (const Material& material : scene.materials) {
     MaterialData<Real> data = CompileMaterial<Real>(material, scene.settings);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
@@ -359,7 +172,7 @@ CompiledScene<Real> CompileScene(const Scene& scene) {
     if (!mesh->colours.empty()) needs |= kNeedsTint;
   }
   for (const Light& light : scene.lights) {
-    compiled.lights.push_back(CompileLight<Real>(light, scene.settings, writer.bounds()));
+    compiled.lights.push_back(CompileLight<Real>(light, scene.settings, bounds));
   }
   Store(scene.settings.background, compiled.background);
   return compiled;

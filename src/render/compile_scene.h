@@ -8,25 +8,15 @@
 #include "sheaf/error.h"
 #include "sheaf/scene.h"
 #include "simd/shading.h"
-#include "simd/tree.h"
-#include "src/core/aligned_array.h"
+#include "src/render/compile_geometry.h"
 #include "src/stream/frame_view.h"
 
 namespace sheaf {
 
-// Owns what a FrameView shows, all but the camera and the samples. Primitive ids follow the order
-// of the scene's objects; a quad is two triangles.
+// Owns what a FrameView shows, all but the camera and the samples.
 template <typename Real>
 struct CompiledScene {
-  AlignedArray<Real> sphere_center[3], sphere_radius;
-  AlignedArray<std::uint32_t> sphere_id;
-  AlignedArray<Real> triangle_vertex[3][3];
-  // Empty where no material has coordinates, no mesh normals, no mesh colours.
-  AlignedArray<Real> triangle_uv[3][2], triangle_normal[3][3], triangle_colour[3][3];
-  AlignedArray<std::uint32_t> triangle_id;
-  std::uint32_t sphere_count = 0, triangle_count = 0;
-  std::vector<PrimitiveInfo> primitives;
-  std::vector<std::uint32_t> object_of_primitive;
+  CompiledGeometry<Real> objects;
   std::vector<MaterialData<Real>> materials;
   std::vector<TextureData<Real>> textures;
   std::vector<std::shared_ptr<const Image>> images;  // that the textures show
@@ -34,10 +24,10 @@ struct CompiledScene {
   std::vector<LightData<Real>> lights;
   Real background[3];
 
-  GeometryView<Real> geometry() const;
+  GeometryView<Real> geometry() const { return objects.data.arrays.view(); }
 };
 
-// Spheres of radius 0 and triangles without area are kept, as NaN, and never hit.
+// Without the tree: objects.data.BuildTree.
 template <typename Real>
 CompiledScene<Real> CompileScene(const Scene& scene);
 

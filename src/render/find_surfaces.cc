@@ -12,19 +12,12 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
   const MaterialData<Real>& material = frame.materials[bin.material];
   const SurfaceOutput<Real> output = surfaces.output();
   bool has_faces = false;
-  switch (bin.shape) {
-    case ShapeKind::kSphere:
-      kernels.sphere_surfaces(frame.geometry.spheres, rays, hits, bin.batch, material.needs,
-                              output);
-      break;
-    case ShapeKind::kTriangle:
-      kernels.triangle_surfaces(frame.geometry.triangles, rays, hits, bin.batch, material.needs,
-                                output);
-      if (material.needs & (kNeedsNormals | kNeedsTint)) {
-        kernels.blend_vertices(frame.geometry.triangles, hits, bin.batch, material.needs, output);
-      }
-      has_faces = (material.needs & kNeedsNormals) != 0;
-      break;
+  kernels.surfaces_of(bin.kind)(frame.geometry, rays, hits, bin.batch, material.needs, output);
+  if (bin.kind == PrimitiveKind::kTriangle) {
+    if (material.needs & (kNeedsNormals | kNeedsTint)) {
+      kernels.blend_vertices(frame.geometry.triangles, hits, bin.batch, material.needs, output);
+    }
+    has_faces = (material.needs & kNeedsNormals) != 0;
   }
   const auto view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
   if (material.needs & kNeedsTint) TintSurfaces(material, frame.textures, bin, view, output);

@@ -10,7 +10,6 @@
 #include "simd/shading.h"
 #include "simd/tree.h"
 #include "src/bvh/build_tree.h"
-#include "src/core/match.h"
 #include "src/core/running_target.h"
 #include "src/render/check_options.h"
 #include "src/render/compile_scene.h"
@@ -18,28 +17,17 @@
 #include "src/render/sample_pattern.h"
 #include "src/render/scalar_tile_renderer.h"
 #include "src/render/tile_renderer.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::uint64_t TriangleCount(const Scene& scene) {
-  std::uint64_t count = 0;
-  for (const Object& object : scene.objects) {
-    count += Match(
-        object.shape, [](const Sphere&) { return std::size_t{0}; },
-        [](const Quad&) { return std::size_t{2}; }, [](const Triangle&) { return std::size_t{1}; },
-        [](const Mesh& mesh) { return mesh.triangles.size(); });
-  }
-  return count;
-}
-
 // What a frame's rays read, and what owns it.
 template <typename Real>
 struct CompiledFrame {
   CompiledScene<Real> scene;
-  Tree<Real> tree;
   std::vector<Real> sample_x, sample_y;
   FrameView<Real> view;
 };
@@ -48,9 +36,8 @@ template <typename Real>
 Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, const Camera& camera,
                                                           const RenderOptions& options,
                                                           Skips skips) {
-  if (TriangleCount(scene) > kMaxTreePrimitives) {
-    return Error{ErrorKind::kScene, fmt::format("{} triangles, at most {} are possible",
-                                                TriangleCount(scene), kMaxTreePrimitives)};
+  if (const Status counts = CheckCounts(CountPrimitives(scene)); !counts.ok()) {
+    return Error{ErrorKind::kScene, counts.error().message};
   }
   auto frame = std::make_unique<CompiledFrame<Real>>();
   CompiledScene<Real>& compiled = frame->scene;
@@ -58,17 +45,18 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   if (skips == Skips::kOff) {
     for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
   }
-  Result<Tree<Real>> tree = BuildTree<Real>(compiled.geometry(), options.threads);
-  if (!tree) return Error{ErrorKind::kScene, tree.error().message};
-  frame->tree = std::move(tree).value();
+  GeometryData<Real>& geometry = compiled.objects.data;
+  if (const Status built = geometry.BuildTree(options.threads); !built.ok()) {
+    return Error{ErrorKind::kScene, built.error().message};
+  }
   for (const glm::dvec2& point : SamplePattern(options.samples)) {
     frame->sample_x.push_back(static_cast<Real>(point.x));
     frame->sample_y.push_back(static_cast<Real>(point.y));
   }
   frame->view = {compiled.geometry(),
-                 frame->tree.view(),
-                 compiled.primitives,
-                 compiled.object_of_primitive,
+                 geometry.tree.view(),
+                 compiled.objects.primitives,
+                 compiled.objects.object_of_primitive,
                  compiled.materials,
                  compiled.textures,
                  compiled.lights,
@@ -93,12 +81,12 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
   const Clock::time_point start = Clock::now();
   const auto compiled = CompileFrame<Real>(scene, camera, options, skips);
   if (!compiled) return compiled.error();
-  const CompiledScene<Real>& counted = compiled.value()->scene;
+  const CompiledGeometry<Real>& objects = compiled.value()->scene.objects;
   stats.compile_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
-  stats.spheres = counted.sphere_count;
-  stats.triangles = counted.triangle_count;
-  stats.primitives = counted.sphere_count + counted.triangle_count;
+  stats.spheres = objects.data.arrays.count(PrimitiveKind::kSphere);
+  stats.triangles = objects.data.arrays.count(PrimitiveKind::kTriangle);
+  stats.primitives = static_cast<std::uint32_t>(objects.primitives.size());
   stats.target = RunningTarget(options.target);
 
   const FrameView<Real>& frame = compiled.value()->view;

@@ -13,7 +13,7 @@ void TintSurfaces(const MaterialData<Real>& material, std::span<const TextureDat
                   const HitBin& bin, const SurfaceView<Real>& surfaces,
                   const SurfaceOutput<Real>& tinted) {
   const std::uint32_t count = bin.batch.count;
-  if (bin.shape == ShapeKind::kSphere) {
+  if (bin.kind != PrimitiveKind::kTriangle) {
     for (Real* channel : {tinted.tint_r, tinted.tint_g, tinted.tint_b}) {
       std::fill_n(channel, count, Real(1));
     }

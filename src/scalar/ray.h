@@ -1,4 +1,4 @@
-// A ray and which rays can hit anything at all.
+// A ray, what it hits, and which rays can hit anything at all.
 #ifndef SHEAF_SCALAR_RAY_H_
 #define SHEAF_SCALAR_RAY_H_
 
@@ -16,6 +16,13 @@ struct Ray {
   std::uint32_t source = kNoPrimitive;  // see simd/query.h
   Real t_min = kDefaultTMin<Real>;
   Real t_max = kDefaultTMax<Real>;
+};
+
+template <typename Real>
+struct Hit {
+  Real t;
+  std::uint32_t primitive = kNoPrimitive;
+  Real u = 0, v = 0;  // by the kind of primitive: see HitFields of simd/streams.h
 };
 
 // An infinite interval admits every finite t. Stays NaN for NaN.

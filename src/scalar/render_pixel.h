@@ -49,11 +49,7 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& ma
 
 template <typename Real>
 Surface<Real> SurfaceOf(const FrameView<Real>& frame, const Ray<Real>& ray, const Hit<Real>& hit) {
-  const std::uint32_t local = frame.primitives[hit.primitive].local;
-  if (local & kTriangleBit) {
-    return TriangleSurface(ray, hit, frame.geometry.triangles, local & ~kTriangleBit);
-  }
-  return SphereSurface(ray, hit, frame.geometry.spheres, local);
+  return SurfaceAt(ray, hit, frame.geometry, frame.primitives[hit.primitive].place);
 }
 
 // Adds `colour`, seen with `throughput`, to `sum`.

@@ -3,6 +3,7 @@
 #define SHEAF_SCALAR_SHADOW_RAY_H_
 
 #include "simd/query.h"
+#include "simd/roundoffs.h"
 #include "simd/shading.h"
 #include "src/scalar/shade.h"
 

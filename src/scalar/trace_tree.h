@@ -4,6 +4,7 @@
 #define SHEAF_SCALAR_TRACE_TREE_H_
 
 #include <bit>
+#include <optional>
 
 #include "simd/query.h"
 #include "simd/tree.h"
@@ -11,25 +12,6 @@
 #include "src/scalar/trace.h"
 
 namespace sheaf::scalar {
-
-// A leaf block as the arrays that HitSphere and HitTriangle read.
-template <typename Real>
-SphereArrays<Real> SphereBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
-  const std::uint32_t first = LeafFirst(leaf), n = LeafCount(leaf);
-  const Real* block = tree.spheres + std::size_t{4} * first;
-  return {n, block, block + n, block + 2 * n, block + 3 * n, tree.sphere_id + first};
-}
-template <typename Real>
-TriangleArrays<Real> TriangleBlock(const TreeView<Real>& tree, std::uint32_t leaf) {
-  const std::uint32_t first = LeafFirst(leaf), n = LeafCount(leaf);
-  TriangleArrays<Real> block{};
-  block.count = n;
-  for (std::uint32_t field = 0; field < 9; ++field) {
-    block.vertex[field / 3][field % 3] = tree.triangles + std::size_t{9} * first + field * n;
-  }
-  block.id = tree.triangle_id + first;
-  return block;
-}
 
 // A ray on its way through a tree, and what it has hit so far.
 template <Query kQuery, typename Real>
@@ -42,7 +24,7 @@ class TreeTracer {
 
   Hit<Real> Trace() {
     if (tree_.node_count == 0 || !IsTraceable(ray_)) return closest_;
-    shear_ = ShearOf(ray_.direction);
+    terms_.emplace(ray_);
     if (!FitsBoxes(tree_, ray_)) {
       TestEveryLeaf();
     } else {
@@ -123,30 +105,20 @@ class TreeTracer {
   }
 
   void TestLeaf(std::uint32_t leaf) {
-    if (IsTriangleLeaf(leaf)) {
-      const TriangleArrays<Real> block = TriangleBlock(tree_, leaf);
-      for (std::uint32_t i = 0; i < block.count && !is_done(); ++i) {
-        if (const auto hit = HitTriangle(ray_, shear_, block, i)) {
-          Keep(block.id[i], hit->t, hit->u, hit->v);
-        }
-      }
-    } else {
-      const SphereArrays<Real> block = SphereBlock(tree_, leaf);
-      for (std::uint32_t i = 0; i < block.count && !is_done(); ++i) {
-        if (const auto hit = HitSphere(ray_, block, i)) Keep(block.id[i], hit->t, hit->u, hit->v);
-      }
-    }
-  }
-
-  void Keep(std::uint32_t id, Real t, Real u, Real v) {
-    if (t < closest_.t || id < closest_.primitive) closest_ = {t, id, u, v};
-    ray_.t_max = closest_.t;
+    WithKind<Real>(LeafKind(leaf), [&](auto arrays) {
+      ShowLeaf(tree_, leaf, arrays);
+      ForEachHit(ray_, *terms_, arrays, [&](const Hit<Real>& hit) {
+        if (hit.t < closest_.t || hit.primitive < closest_.primitive) closest_ = hit;
+        ray_.t_max = closest_.t;
+        return !is_done();
+      });
+    });
   }
 
   const TreeView<Real>& tree_;
   Ray<Real> ray_;
   Hit<Real> closest_;
-  TriangleShear<Real> shear_;
+  std::optional<RayTerms<Real>> terms_;
   RaySlabs<Real> box_;
 };
 

@@ -1,76 +1,13 @@
 #include "src/scene/transform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
-namespace {
-
-class ObjectMover {
- public:
-  explicit ObjectMover(const Transform& transform)
-      : transform_(transform),
-        // Normals go with the cofactors: the inverse transposed, without its scale.
-        cofactors_(glm::cross(transform.linear[1], transform.linear[2]),
-                   glm::cross(transform.linear[2], transform.linear[0]),
-                   glm::cross(transform.linear[0], transform.linear[1])),
-        mirrors_(glm::determinant(transform.linear) < 0) {}
-
-  // Returns what is wrong, or nothing.
-  std::string Move(Object& object) const {
-    return Match(
-        object.shape, [&](Sphere& sphere) { return Move(sphere); },
-        [&](Quad& quad) { return Move(quad); }, [&](Triangle& triangle) { return Move(triangle); },
-        [&](Mesh& mesh) { return Move(mesh); });
-  }
-
- private:
-  const char* Move(Sphere& sphere) const {
-    if (!transform_.KeepsSpheres()) {
-      return "a sphere can be turned, moved and scaled alike along all axes only";
-    }
-    sphere.center = transform_.Point(sphere.center);
-    sphere.radius *= transform_.Scale();
-    return "";
-  }
-  const char* Move(Quad& quad) const {
-    for (Vec3d& corner : quad.corners) corner = transform_.Point(corner);
-    return "";
-  }
-  const char* Move(Triangle& triangle) const {
-    for (Vec3d& vertex : triangle.vertices) vertex = transform_.Point(vertex);
-    return "";
-  }
-  const char* Move(Mesh& mesh) const {
-    for (glm::vec3& p : mesh.positions) p = glm::vec3(transform_.Point(Vec3d(p)));
-    for (glm::vec3& n : mesh.normals) {
-      const Vec3d normal = cofactors_ * Vec3d(n);
-      const double length = glm::length(normal);
-      n = length > 0 ? glm::vec3(normal / length) : glm::vec3(0);
-    }
-    // A mirror turns the order of corners round, and with it the front.
-    if (mirrors_) {
-      for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
-    }
-    const bool is_finite =
-        std::all_of(mesh.positions.begin(), mesh.positions.end(), [](const glm::vec3& p) {
-          return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-        });
-    return is_finite ? "" : "a vertex is not finite after the transform";
-  }
-
-  const Transform& transform_;
-  glm::dmat3 cofactors_;
-  bool mirrors_;
-};
-
-}  // namespace
-
 bool Transform::KeepsSpheres() const {
   const double size = Scale();
   for (int i = 0; i < 3; ++i) {
@@ -106,9 +43,8 @@ Transform RotationAbout(const Vec3d& axis, double degrees) {
 }
 
 std::string TransformScene(const Transform& transform, Scene* scene) {
-  const ObjectMover mover(transform);
   for (Object& object : scene->objects) {
-    const std::string fault = mover.Move(object);
+    const std::string fault = TransformShape(transform, &object.shape);
     if (!fault.empty()) return fault;
   }
   for (Light& light : scene->lights) {

@@ -25,9 +25,11 @@ struct FirstHit {
   std::uint32_t primitive = kNoPrimitive;
 };
 
-// What counts as one surface: a sphere, or all triangles of one material, which meshes are made of.
+// What counts as one surface: a primitive, but all triangles of one material, which meshes are made
+// of.
 inline std::uint32_t SurfaceIdOf(std::uint32_t primitive, const PrimitiveInfo& info) {
-  return info.local & kTriangleBit ? kTriangleBit | info.material : primitive;
+  constexpr std::uint32_t kTriangles = 0x80000000u;
+  return info.kind() == PrimitiveKind::kTriangle ? kTriangles | info.material : primitive;
 }
 
 // Normals further apart than this, about 18 degrees, are an edge.

@@ -9,12 +9,12 @@
 
 namespace sheaf {
 
-// Set in PrimitiveInfo::local where the primitive is a triangle.
-inline constexpr std::uint32_t kTriangleBit = 0x80000000u;
-
 struct PrimitiveInfo {
-  std::uint32_t local;     // index into the spheres or the triangles, with kTriangleBit
+  std::uint32_t place;     // its kind and its index among the kind's arrays: MakePlace
   std::uint32_t material;  // index into the materials
+
+  PrimitiveKind kind() const { return KindOf(place); }
+  std::uint32_t index() const { return IndexIn(place); }
 };
 
 template <typename Real>

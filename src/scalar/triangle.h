@@ -8,8 +8,8 @@
 // within rounding of a silhouette), no winding swap (either sign counts), t by two divisions and
 // from scaled edge functions, so that no product over- or underflows, and no hit outside the
 // triangle's own extent.
-#ifndef SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
-#define SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
+#ifndef SHEAF_SCALAR_TRIANGLE_H_
+#define SHEAF_SCALAR_TRIANGLE_H_
 
 #include <algorithm>
 #include <bit>
@@ -19,8 +19,11 @@
 #include <optional>
 #include <type_traits>
 
+#include "simd/primitives.h"
+#include "simd/query.h"
 #include "simd/roundoffs.h"
 #include "src/scalar/ray.h"
+#include "src/scalar/surface.h"
 
 namespace sheaf::scalar {
 
@@ -144,6 +147,90 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   return TriangleHit<Real>{t, v / det, w / det};
 }
 
+template <typename Real>
+Vec3<Real> TriangleVertex(const TriangleArrays<Real>& triangles, std::uint32_t i, int vertex) {
+  return {triangles.vertex[vertex][0][i], triangles.vertex[vertex][1][i],
+          triangles.vertex[vertex][2][i]};
+}
+
+// The hit of one triangle in [t_min, t_max]; the source triangle is never hit.
+template <typename Real>
+SHEAF_INLINE std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray,
+                                                          const TriangleShear<Real>& shear,
+                                                          const TriangleArrays<Real>& triangles,
+                                                          std::uint32_t i) {
+  if ((ray.source & ~kInsideBit) == triangles.id[i]) return std::nullopt;
+  const Vec3<Real> vertices[3] = {TriangleVertex(triangles, i, 0), TriangleVertex(triangles, i, 1),
+                                  TriangleVertex(triangles, i, 2)};
+  const auto hit = IntersectTriangle(ray.origin, ray.direction, shear, vertices);
+  if (!hit || !(ray.t_min <= hit->t && hit->t <= ray.t_max)) return std::nullopt;
+  return hit;
+}
+
+template <typename Real>
+Vec3<Wide<Real>> VertexValue(const Real* const (&values)[3][3], int vertex, std::uint32_t i) {
+  return Vec3<Real>{values[vertex][0][i], values[vertex][1][i], values[vertex][2][i]}
+      .template To<Wide<Real>>();
+}
+
+// The position is the barycentric mean of the vertices, whose error lies almost wholly in the
+// plane.
+template <typename Real>
+Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
+                              const TriangleArrays<Real>& triangles, std::uint32_t i) {
+  using W = Wide<Real>;
+  const Vec3<W> v0 = TriangleVertex(triangles, i, 0).template To<W>();
+  const Vec3<W> v1 = TriangleVertex(triangles, i, 1).template To<W>();
+  const Vec3<W> v2 = TriangleVertex(triangles, i, 2).template To<W>();
+  const W w1 = static_cast<W>(hit.u), w2 = static_cast<W>(hit.v);
+  const W w0 = (1 - w1) - w2;
+  const Vec3<W> front = NormalizeWide(Cross(v1 - v0, v2 - v0));
+  const bool inside = Dot(front, ray.direction.template To<W>()) > 0;
+  const Vec3<W> position = (v0 * w0 + v1 * w1) + v2 * w2;
+
+  Surface<Real> surface;
+  surface.position = position.template To<Real>();
+  surface.face = (inside ? -front : front).template To<Real>();
+  surface.normal = surface.face;
+  surface.direction = ray.direction;
+  const auto mean = [&](const Real* const(&values)[3][3]) {
+    return (VertexValue(values, 0, i) * w0 + VertexValue(values, 1, i) * w1) +
+           VertexValue(values, 2, i) * w2;
+  };
+  if (triangles.normal[0][0]) {
+    const Vec3<W> smooth = mean(triangles.normal);
+    if (Dot(smooth, smooth) > 0) {  // not NaN either
+      const Vec3<W> unit = NormalizeWide(smooth);
+      // Files disagree on the side that normals show: it is the face's, which faces the ray.
+      const bool turn = Dot(unit, surface.face.template To<W>()) < 0;
+      surface.normal = (turn ? -unit : unit).template To<Real>();
+    }
+  }
+  if (triangles.colour[0][0]) {
+    // Equal colours give that colour, exactly: a mesh without any keeps its white.
+    const auto colour = [&](int vertex) { return VertexValue(triangles.colour, vertex, i); };
+    const Vec3<W> first = colour(0);
+    surface.tint =
+        ((first + (colour(1) - first) * w1) + (colour(2) - first) * w2).template To<Real>();
+  }
+  if (triangles.uv[0][0]) {
+    const auto coordinate = [&](int axis) {
+      const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };
+      return static_cast<Real>((uv(0) * w0 + uv(1) * w1) + uv(2) * w2);
+    };
+    surface.u = coordinate(0);
+    surface.v = coordinate(1);
+  }
+  // A neighbour's plane is tested from vertices that are as large as these, not as this point.
+  const Vec3<W> terms = {(std::abs(v0.x) + std::abs(v1.x)) + std::abs(v2.x),
+                         (std::abs(v0.y) + std::abs(v1.y)) + std::abs(v2.y),
+                         (std::abs(v0.z) + std::abs(v1.z)) + std::abs(v2.z)};
+  surface.offset =
+      static_cast<Real>(static_cast<W>(kPositionRoundoffs<Real>) * AbsDot(front, terms));
+  surface.source = hit.primitive | (inside ? kInsideBit : 0);
+  return surface;
+}
+
 }  // namespace sheaf::scalar
 
-#endif  // SHEAF_SCALAR_INTERSECT_TRIANGLE_H_
+#endif  // SHEAF_SCALAR_TRIANGLE_H_

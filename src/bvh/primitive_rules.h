@@ -1,0 +1,82 @@
+// What each kind of primitive may be made of, which of them no ray can hit, and what contains them.
+#ifndef SHEAF_BVH_PRIMITIVE_RULES_H_
+#define SHEAF_BVH_PRIMITIVE_RULES_H_
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simd/primitives.h"
+#include "src/bvh/round_outward.h"
+#include "src/core/has_area.h"
+
+namespace sheaf::bvh {
+
+inline bool AreFinite(const float* x, int count) {
+  return std::all_of(x, x + count, [](float value) { return std::isfinite(value); });
+}
+
+// The rules of a kind. They take the fields of one primitive, in the order of its arrays'
+// ForEachField.
+//   Fault: "", or what is wrong with numbers that a user gave.
+//   IsHittable: false for a triangle without area, a sphere of radius 0: what no ray may hit.
+//   kMarkedField: which is NaN in the arrays of what is not hittable.
+//   ExactBounds: along an axis, of finite fields, rounded outward.
+template <PrimitiveKind kKind>
+struct Rules;
+
+template <>
+struct Rules<PrimitiveKind::kTriangle> {
+  static constexpr int kMarkedField = 0;
+
+  static const char* Fault(const float* vertices) {
+    return AreFinite(vertices, 9) ? "" : "a coordinate is not finite";
+  }
+  template <typename Real>
+  static bool IsHittable(const Real* vertices) {
+    double exact[3][3];
+    for (int i = 0; i < 9; ++i) exact[i / 3][i % 3] = static_cast<double>(vertices[i]);
+    return HasArea(exact);
+  }
+  template <typename Real>
+  static void ExactBounds(const Real* vertices, int axis, float& lower, float& upper) {
+    const Real a = vertices[axis], b = vertices[3 + axis], c = vertices[6 + axis];
+    lower = RoundDown(static_cast<double>(std::min(std::min(a, b), c)));
+    upper = RoundUp(static_cast<double>(std::max(std::max(a, b), c)));
+  }
+};
+
+template <>
+struct Rules<PrimitiveKind::kSphere> {
+  static constexpr int kMarkedField = 3;
+
+  static const char* Fault(const float* sphere) {
+    return !AreFinite(sphere, 3)       ? "a coordinate is not finite"
+           : !std::isfinite(sphere[3]) ? "the radius is not finite"
+           : sphere[3] < 0             ? "the radius is negative"
+                                       : "";
+  }
+  template <typename Real>
+  static bool IsHittable(const Real* sphere) {
+    return sphere[3] > 0;
+  }
+  template <typename Real>
+  static void ExactBounds(const Real* sphere, int axis, float& lower, float& upper) {
+    const double center = static_cast<double>(sphere[axis]);
+    const double radius = std::abs(static_cast<double>(sphere[3]));
+    lower = RoundDown(-SumUp(-center, radius));
+    upper = RoundUp(SumUp(center, radius));
+  }
+};
+
+// Marks a primitive that no ray can hit; returns whether one can.
+template <PrimitiveKind kKind, typename Real>
+bool MarkUnlessHittable(Real* fields) {
+  const bool is_hittable = Rules<kKind>::IsHittable(fields);
+  if (!is_hittable) fields[Rules<kKind>::kMarkedField] = std::numeric_limits<Real>::quiet_NaN();
+  return is_hittable;
+}
+
+}  // namespace sheaf::bvh
+
+#endif  // SHEAF_BVH_PRIMITIVE_RULES_H_

@@ -1,0 +1,135 @@
+#include "src/render/compile_geometry.h"
+
+#include <array>
+#include <glm/common.hpp>
+#include <variant>
+
+#include "src/scene/shapes.h"
+
+namespace sheaf {
+namespace {
+
+// Which attributes of vertices some material or mesh asks for.
+VertexAttributes AttributesOf(const Scene& scene) {
+  VertexAttributes attributes;
+  for (const Material& material : scene.materials) {
+    attributes.has_coordinates |= !std::holds_alternative<Colour>(material.base_colour);
+  }
+  for (const Object& object : scene.objects) {
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (mesh == nullptr) continue;
+    attributes.has_normals |= !mesh->normals.empty();
+    attributes.has_colours |= !mesh->colours.empty();
+  }
+  return attributes;
+}
+
+// Adds the primitives of objects, in their order.
+template <typename Real>
+class GeometryWriter {
+ public:
+  GeometryWriter(const Scene& scene, CompiledGeometry<Real>& to)
+      : attributes_(AttributesOf(scene)), to_(to), arrays_(to.data.arrays) {
+    const PrimitiveCounts counts = Narrow(CountPrimitives(scene));
+    arrays_ = GeometryArrays<Real>(counts, attributes_);
+    to_.primitives.reserve(counts.total());
+    to_.object_of_primitive.reserve(counts.total());
+  }
+
+  void Add(std::uint32_t index, const Object& object) {
+    object_ = index;
+    material_ = object.material;
+    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) return AddMesh(*mesh);
+    ForEachPrimitive(object.shape, [&](const ShapePrimitive& primitive) { AddPlain(primitive); });
+    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(point); });
+  }
+
+  const PointBounds& bounds() const { return bounds_; }
+
+ private:
+  // A primitive that is no mesh's.
+  void AddPlain(const ShapePrimitive& primitive) {
+    const std::uint32_t i = Put(primitive.kind, primitive.fields);
+    if (primitive.kind != PrimitiveKind::kTriangle) return;
+    for (int vertex = 0; vertex < 3; ++vertex) {
+      if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, primitive.uv[vertex]);
+      if (attributes_.has_normals) Store(arrays_.normal, vertex, i, glm::vec3(0));
+      if (attributes_.has_colours) Store(arrays_.colour, vertex, i, glm::vec3(1));
+    }
+  }
+
+  void AddMesh(const Mesh& mesh) {
+    for (const auto& corners : mesh.triangles) {
+      std::array<double, kMaxFields> vertices;
+      for (std::size_t k = 0; k < 9; ++k) {
+        vertices[k] = mesh.positions[corners[k / 3]][static_cast<int>(k % 3)];
+      }
+      for (const std::uint32_t corner : corners) Include(Vec3d(mesh.positions[corner]));
+      const std::uint32_t i = Put(PrimitiveKind::kTriangle, vertices);
+      for (int vertex = 0; vertex < 3; ++vertex) {
+        const std::uint32_t from = corners[static_cast<std::size_t>(vertex)];
+        if (attributes_.has_coordinates) {
+          Store(arrays_.uv, vertex, i,
+                mesh.uv.empty() ? glm::dvec2(Triangle{}.uv[static_cast<std::size_t>(vertex)])
+                                : glm::dvec2(mesh.uv[from]));
+        }
+        if (attributes_.has_normals) {
+          Store(arrays_.normal, vertex, i,
+                mesh.normals.empty() ? glm::vec3(0) : mesh.normals[from]);
+        }
+        if (attributes_.has_colours) {
+          Store(arrays_.colour, vertex, i,
+                mesh.colours.empty() ? glm::vec3(1) : mesh.colours[from]);
+        }
+      }
+    }
+  }
+
+  // Returns the index among its kind.
+  std::uint32_t Put(PrimitiveKind kind, const std::array<double, kMaxFields>& exact) {
+    std::array<Real, kMaxFields> fields;
+    for (std::size_t k = 0; k < kMaxFields; ++k) fields[k] = static_cast<Real>(exact[k]);
+    const std::uint32_t index = next_[kind]++;
+    const auto id = static_cast<std::uint32_t>(to_.primitives.size());
+    WithKind<Real>(kind, [&](auto arrays) {
+      arrays_.template Put<decltype(arrays)::kKind>(index, id, fields.data());
+    });
+    to_.primitives.push_back({MakePlace(kind, index), material_});
+    to_.object_of_primitive.push_back(object_);
+    return index;
+  }
+
+  template <std::size_t N, typename Value>
+  static void Store(AlignedArray<Real> (&values)[3][N], int vertex, std::uint32_t i,
+                    const Value& value) {
+    for (int axis = 0; axis < static_cast<int>(N); ++axis) {
+      values[vertex][axis][i] = static_cast<Real>(value[axis]);
+    }
+  }
+
+  void Include(const Vec3d& point) {
+    bounds_.low = glm::min(bounds_.low, point);
+    bounds_.high = glm::max(bounds_.high, point);
+  }
+
+  VertexAttributes attributes_;
+  CompiledGeometry<Real>& to_;
+  GeometryArrays<Real>& arrays_;
+  PointBounds bounds_;
+  PrimitiveCounts next_;
+  std::uint32_t object_ = 0, material_ = 0;
+};
+
+}  // namespace
+
+template <typename Real>
+PointBounds CompileGeometry(const Scene& scene, CompiledGeometry<Real>& to) {
+  GeometryWriter<Real> writer(scene, to);
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) writer.Add(i, scene.objects[i]);
+  return writer.bounds();
+}
+
+template PointBounds CompileGeometry(const Scene&, CompiledGeometry<float>&);
+template PointBounds CompileGeometry(const Scene&, CompiledGeometry<double>&);
+
+}  // namespace sheaf

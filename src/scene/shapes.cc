@@ -1,0 +1,114 @@
+#include "src/scene/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "src/core/match.h"
+
+namespace sheaf {
+namespace {
+
+ShapePrimitive TrianglePrimitive(const Triangle& triangle) {
+  ShapePrimitive primitive{PrimitiveKind::kTriangle, {}, triangle.uv};
+  for (std::size_t k = 0; k < 9; ++k) {
+    primitive.fields[k] = triangle.vertices[k / 3][static_cast<int>(k % 3)];
+  }
+  return primitive;
+}
+
+const char* MoveMesh(const Transform& transform, Mesh& mesh) {
+  const glm::dmat3& linear = transform.linear;
+  // Normals go with the cofactors: the inverse transposed, without its scale.
+  const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                             glm::cross(linear[0], linear[1]));
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(transform.Point(Vec3d(p)));
+  for (glm::vec3& n : mesh.normals) {
+    const Vec3d normal = cofactors * Vec3d(n);
+    const double length = glm::length(normal);
+    n = length > 0 ? glm::vec3(normal / length) : glm::vec3(0);
+  }
+  // A mirror turns the order of corners round, and with it the front.
+  if (glm::determinant(linear) < 0) {
+    for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
+  }
+  const bool is_finite =
+      std::all_of(mesh.positions.begin(), mesh.positions.end(), [](const glm::vec3& p) {
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      });
+  return is_finite ? "" : "a vertex is not finite after the transform";
+}
+
+}  // namespace
+
+void ForEachExtreme(const Shape& shape, const std::function<void(const Vec3d&)>& include) {
+  Match(
+      shape,
+      [&](const Sphere& sphere) {
+        include(sphere.center - sphere.radius);
+        include(sphere.center + sphere.radius);
+      },
+      [&](const Quad& quad) {
+        for (const Vec3d& corner : quad.corners) include(corner);
+      },
+      [&](const Triangle& triangle) {
+        for (const Vec3d& vertex : triangle.vertices) include(vertex);
+      },
+      [&](const Mesh& mesh) {
+        for (const glm::vec3& vertex : mesh.positions) include(Vec3d(vertex));
+      });
+}
+
+std::string TransformShape(const Transform& transform, Shape* shape) {
+  return Match(
+      *shape,
+      [&](Sphere& sphere) {
+        if (!transform.KeepsSpheres()) {
+          return "a sphere can be turned, moved and scaled alike along all axes only";
+        }
+        sphere.center = transform.Point(sphere.center);
+        sphere.radius *= transform.Scale();
+        return "";
+      },
+      [&](Quad& quad) {
+        for (Vec3d& corner : quad.corners) corner = transform.Point(corner);
+        return "";
+      },
+      [&](Triangle& triangle) {
+        for (Vec3d& vertex : triangle.vertices) vertex = transform.Point(vertex);
+        return "";
+      },
+      [&](Mesh& mesh) { return MoveMesh(transform, mesh); });
+}
+
+void ForEachPrimitive(const Shape& shape, const std::function<void(const ShapePrimitive&)>& add) {
+  Match(
+      shape,
+      [&](const Sphere& sphere) {
+        const Vec3d& c = sphere.center;
+        add({PrimitiveKind::kSphere, {c.x, c.y, c.z, sphere.radius}, {}});
+      },
+      [&](const Quad& quad) {
+        const auto& c = quad.corners;
+        const glm::dvec2 uv[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        add(TrianglePrimitive({{c[0], c[1], c[2]}, {uv[0], uv[1], uv[2]}}));
+        add(TrianglePrimitive({{c[0], c[2], c[3]}, {uv[0], uv[2], uv[3]}}));
+      },
+      [&](const Triangle& triangle) { add(TrianglePrimitive(triangle)); }, [](const Mesh&) {});
+}
+
+CountsByKind<std::uint64_t> CountPrimitives(const Scene& scene) {
+  CountsByKind<std::uint64_t> counts;
+  for (const Object& object : scene.objects) {
+    ForEachPrimitive(object.shape,
+                     [&](const ShapePrimitive& primitive) { ++counts[primitive.kind]; });
+    if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
+      counts[PrimitiveKind::kTriangle] += mesh->triangles.size();
+    }
+  }
+  return counts;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,169 @@
+// Triangles and spheres to trace rays against: the library without the renderer.
+//
+//   GeometryInput input;
+//   input.AddTriangles(vertices, indices);
+//   Result<Geometry> geometry = Geometry::Build(input);
+//   TraceClosest(geometry.value(), rays, count, hits);
+//
+// Lengths are in any one unit. Everything is single precision; the hits are those of strict
+// arithmetic, the same bits on every processor. Memory that runs out throws std::bad_alloc; nothing
+// else throws.
+#ifndef SHEAF_SHEAF_GEOMETRY_H_
+#define SHEAF_SHEAF_GEOMETRY_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/target.h"
+
+namespace sheaf {
+
+// The objects of a geometry, by reference: what the spans show must live until Build has returned.
+// Objects are numbered from 0 in the order of the calls, primitives from 0 through all objects.
+// Nothing is checked before Build.
+class GeometryInput {
+ public:
+  // A mesh. `vertices`: x, y, z of each, any finite number; `indices`: three vertices a triangle,
+  // each below the number of vertices. A triangle without area is never hit. Returns the object's
+  // id.
+  std::uint32_t AddTriangles(std::span<const float> vertices,
+                             std::span<const std::uint32_t> indices);
+  // `spheres`: center x, y, z and radius of each, finite, the radius >= 0. A sphere of radius 0 is
+  // never hit. Returns the object's id.
+  std::uint32_t AddSpheres(std::span<const float> spheres) { return Add(1, spheres); }
+
+ private:
+  friend struct GeometryAccess;
+  // Primitives of a kind, by the library's own number for it.
+  std::uint32_t Add(std::uint32_t kind, std::span<const float> fields);
+
+  struct Object {
+    std::uint32_t kind;
+    std::span<const float> numbers;          // vertices, or the fields of primitives in turn
+    std::span<const std::uint32_t> indices;  // of a mesh
+  };
+  std::vector<Object> objects_;
+};
+
+// What a geometry is made of, and takes.
+struct GeometryStatistics {
+  std::uint32_t primitives;            // in the tree, of all kinds
+  std::uint32_t triangles, spheres;    // of these
+  std::uint32_t never_hit;             // left out: without area, of radius 0
+  std::uint32_t nodes, leaves, depth;  // of the tree
+  std::size_t bytes;                   // of memory, all that the geometry holds
+};
+
+// Objects with a tree over their primitives; needs nothing of the input any more. Immutable, so
+// that any number of threads may use one; it can be moved, and is then empty.
+class Geometry {
+ public:
+  // In place of a primitive's id: none. Ids are below it.
+  static constexpr std::uint32_t kNoPrimitive = 0x7fffffffu;
+  // With a sphere's id as a ray's source: the ray runs inside the sphere (see RayArrays::source).
+  static constexpr std::uint32_t kInsideBit = 0x80000000u;
+
+  // Without objects: every ray misses it.
+  Geometry();
+  Geometry(Geometry&& other) noexcept;
+  Geometry& operator=(Geometry&& other) noexcept;
+  ~Geometry();
+
+  // Builds on `threads` threads (0: one a core); the geometry does not depend on how many. Fails
+  // with kUsage and the object's and the primitive's number where an index is out of range, a
+  // coordinate is not finite, a radius is negative or a count does not divide, and with kUsage
+  // where there are more than 2^26 primitives of a kind.
+  static Result<Geometry> Build(const GeometryInput& input, int threads = 0);
+
+  // The smallest box around the primitives, up to a millionth of its size; lower > upper where
+  // there are none. x, y, z.
+  std::array<float, 3> lower() const;
+  std::array<float, 3> upper() const;
+  // Walks the whole tree.
+  GeometryStatistics statistics() const;
+
+  std::uint32_t object_count() const;
+  // The object that a primitive belongs to. `primitive` is below the number of all given.
+  std::uint32_t object_of(std::uint32_t primitive) const;
+  // The first primitive of an object, or for object_count() the number of all primitives given.
+  std::uint32_t first_primitive(std::uint32_t object) const;
+
+ private:
+  friend struct GeometryAccess;
+  struct Data;
+  const Data& data() const;
+
+  std::unique_ptr<const Data> data_;  // null: without objects
+};
+
+// Rays, an element each of every array. Not owned; no array needs padding or alignment.
+struct RayArrays {
+  const float* origin_x = nullptr;
+  const float* origin_y = nullptr;
+  const float* origin_z = nullptr;
+  const float* direction_x = nullptr;  // of any length but 0; t counts in lengths of it
+  const float* direction_y = nullptr;
+  const float* direction_z = nullptr;
+  // The primitive that a ray starts on, Geometry::kNoPrimitive for none; null: none for all. A
+  // triangle is never hit by its own ray. A sphere is not either, or with Geometry::kInsideBit in
+  // the far root alone.
+  const std::uint32_t* source = nullptr;
+};
+
+// A hit at t counts where t_min <= t <= t_max. An array where each ray has its own interval, else
+// one value for all. By default every hit in front of the origin counts, but none at exactly 0.
+struct TraceInterval {
+  const float* t_min = nullptr;
+  const float* t_max = nullptr;
+  float all_t_min = std::numeric_limits<float>::denorm_min();
+  float all_t_max = std::numeric_limits<float>::max();
+};
+
+// What is known of a batch of rays. It may change the time a batch takes, never a hit.
+enum class RayCoherence {
+  kUnknown,       // measured, 16 rays at a time
+  kCommonOrigin,  // the same, where rays share their origin
+  kCoherent,      // neighbours go similar ways from different origins
+  kIncoherent,    // neighbours go different ways
+};
+
+struct TraceOptions {
+  TraceInterval interval;
+  RayCoherence coherence = RayCoherence::kUnknown;
+  Target target = {};  // what computes it; the bits are the same on all
+};
+
+// What TraceClosest writes, `count` elements each; arrays that are null are left out. They do not
+// overlap each other nor the rays.
+struct HitArrays {
+  float* t = nullptr;                  // in lengths of the direction; t_max where the ray misses
+  std::uint32_t* primitive = nullptr;  // Geometry::kNoPrimitive where the ray misses
+  std::uint32_t* object = nullptr;     // likewise
+  // Where on the primitive; 0 where the ray misses.
+  // Triangle: the barycentric weights of the second and the third vertex.
+  // Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so
+  // that t + v, summed in double, is the distance to twice the digits.
+  float* u = nullptr;
+  float* v = nullptr;
+};
+
+// The nearest hit of each of `count` rays; of equal t the lowest primitive. Rays with a component
+// that is not finite, with no direction or with t_min > t_max miss. Safe to call from any number of
+// threads at once.
+void TraceClosest(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
+                  const HitArrays& hits, const TraceOptions& options = {});
+
+// Writes to occluded[0, count): 1 where a ray hits anything within its interval, else 0. Rays and
+// threads as with TraceClosest.
+void TraceOccluded(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
+                   std::uint32_t* occluded, const TraceOptions& options = {});
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SHEAF_GEOMETRY_H_
