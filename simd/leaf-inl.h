@@ -48,75 +48,107 @@ HWY_INLINE bool HasTriangles(std::uint32_t leaf) {
 
 // ---- A packet ----
 
+// Where the hits of a vector of rays are kept.
+template <typename Real>
+struct HitSlots {
+  Real *t_best, *u, *v;  // u and v are left alone where kOccluded is asked
+  std::uint32_t* id;
+};
+
 // Takes the lanes of `hit` whose t is nearer than what they had, or as near with a lower id. Every
 // t is at most t_best.
 template <Query kQuery, class D, class M, class V, class VI, typename Real = hn::TFromD<D>>
-HWY_INLINE void KeepHits(D d, Packet<Real>& packet, M hit, V t, V u, V v, VI id) {
+HWY_INLINE void KeepHits(D d, const HitSlots<Real>& slots, M hit, V t, V u, V v, VI id) {
   const IdLanes<D> di;
-  const auto t_best = hn::Load(d, packet.t_best);
-  const auto id_best = LoadIds(d, packet.id);
+  const auto t_best = hn::LoadU(d, slots.t_best);
+  const auto id_best = LoadIds(d, slots.id);
   const auto lower = hn::RebindMask(d, hn::Lt(id, id_best));
   const auto closer = hn::And(hit, hn::Or(hn::Lt(t, t_best), lower));
   const auto t_new = kQuery == Query::kClosest ? t : hn::Set(d, kDone<Real>);
-  hn::Store(hn::IfThenElse(closer, t_new, t_best), d, packet.t_best);
-  StoreIds(d, hn::IfThenElse(hn::RebindMask(di, closer), id, id_best), packet.id);
+  hn::StoreU(hn::IfThenElse(closer, t_new, t_best), d, slots.t_best);
+  StoreIds(d, hn::IfThenElse(hn::RebindMask(di, closer), id, id_best), slots.id);
   if constexpr (kQuery == Query::kClosest) {
-    hn::Store(hn::IfThenElse(closer, u, hn::Load(d, packet.u)), d, packet.u);
-    hn::Store(hn::IfThenElse(closer, v, hn::Load(d, packet.v)), d, packet.v);
+    hn::StoreU(hn::IfThenElse(closer, u, hn::LoadU(d, slots.u)), d, slots.u);
+    hn::StoreU(hn::IfThenElse(closer, v, hn::LoadU(d, slots.v)), d, slots.v);
   }
 }
 
+// A vector of rays as the tests of primitives read them. Pointers need no alignment; t_min and the
+// sources are asked for, because a batch may have one for all.
+template <typename Real>
+struct PacketRays {
+  Packet<Real>& packet;
+
+  HWY_INLINE const Real* origin(int axis) const { return packet.origin[axis]; }
+  HWY_INLINE const Real* direction(int axis) const { return packet.direction[axis]; }
+  HWY_INLINE const Real* shear_x() const { return packet.shear_x; }
+  HWY_INLINE const Real* shear_y() const { return packet.shear_y; }
+  HWY_INLINE const Real* screen() const { return packet.screen; }
+  HWY_INLINE HitSlots<Real> slots() const { return {packet.t_best, packet.u, packet.v, packet.id}; }
+  template <class D>
+  HWY_INLINE hn::Vec<D> TMin(D d) const {
+    return hn::Load(d, packet.t_min);
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<IdLanes<D>> Sources(D d) const {
+    return LoadIds(d, packet.source);
+  }
+};
+
 // One triangle, vertices relative to the rays' origins in the order kx, ky, kz of `axis`, against
-// the rays of `lanes`, all of that axis.
-template <Query kQuery, class D, class M, class V, typename Real = hn::TFromD<D>>
-HWY_INLINE void TriangleAgainstPacket(D d, Packet<Real>& packet, int axis, V ax, V ay, V az, V bx,
-                                      V by, V bz, V cx, V cy, V cz, std::uint32_t id, M lanes) {
-  const int kx = (axis + 1) % 3, ky = (axis + 2) % 3;
+// the rays of `lanes`, all of that axis. Returns the lanes that hit it, which are kept.
+template <Query kQuery, class D, class Rays, class M, class V>
+HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V az, V bx, V by,
+                                 V bz, V cx, V cy, V cz, std::uint32_t id, M lanes) {
+  const int kx = axis == 2 ? 0 : axis + 1, ky = axis == 0 ? 2 : axis - 1;
   V t, v, w, det;
-  const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::Load(d, packet.shear_x),
-                               hn::Load(d, packet.shear_y), hn::Load(d, packet.direction[kx]),
-                               hn::Load(d, packet.direction[ky]),
-                               hn::Load(d, packet.direction[axis]), lanes, t, v, w, det);
-  if (hn::AllFalse(d, inside)) return;
+  const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::LoadU(d, rays.shear_x()),
+                               hn::LoadU(d, rays.shear_y()), hn::LoadU(d, rays.direction(kx)),
+                               hn::LoadU(d, rays.direction(ky)), hn::LoadU(d, rays.direction(axis)),
+                               lanes, t, v, w, det);
+  if (hn::AllFalse(d, inside)) return inside;
   const IdLanes<D> di;
   using Id = hn::TFromD<IdLanes<D>>;
   const auto ids = hn::Set(di, Id{id});
-  const auto source = hn::And(LoadIds(d, packet.source), hn::Set(di, Id{~kInsideBit}));
+  const auto source = hn::And(rays.Sources(d), hn::Set(di, Id{~kInsideBit}));
   const auto elsewhere = hn::RebindMask(d, hn::Ne(source, ids));
-  const M within =
-      hn::And(hn::Le(hn::Load(d, packet.t_min), t), hn::Le(t, hn::Load(d, packet.t_best)));
+  const auto slots = rays.slots();
+  const M within = hn::And(hn::Le(rays.TMin(d), t), hn::Le(t, hn::LoadU(d, slots.t_best)));
   const M hit = hn::And(hn::And(inside, elsewhere), within);
-  if (hn::AllFalse(d, hit)) return;
-  KeepHits<kQuery>(d, packet, hit, t, Divide(d, v, det), Divide(d, w, det), ids);
+  if (hn::AllFalse(d, hit)) return hit;
+  KeepHits<kQuery>(d, slots, hit, t, Divide(d, v, det), Divide(d, w, det), ids);
+  return hit;
 }
 
-// Sphere `i` of a block of `n` against the rays of `lanes`.
-template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
-HWY_NOINLINE void SphereAgainstPacket(D d, Packet<Real>& packet, const Real* block, std::uint32_t n,
-                                      std::uint32_t i, std::uint32_t id, M lanes) {
+// Sphere `i` of a block of `n` against the rays of `lanes`. Returns the lanes that hit it, which
+// are kept.
+template <Query kQuery, class D, class Rays, class M, typename Real = hn::TFromD<D>>
+HWY_NOINLINE M SphereAgainstRays(D d, const Rays& rays, const Real* block, std::uint32_t n,
+                                 std::uint32_t i, std::uint32_t id, M lanes) {
   using V = hn::Vec<D>;
   const IdLanes<D> di;
   using Id = hn::TFromD<IdLanes<D>>;
-  const auto t_min = hn::Load(d, packet.t_min), t_best = hn::Load(d, packet.t_best);
-  const auto source = LoadIds(d, packet.source);
+  const auto slots = rays.slots();
+  const auto t_min = rays.TMin(d), t_best = hn::LoadU(d, slots.t_best);
+  const auto source = rays.Sources(d);
   const auto ids = hn::Set(di, Id{id});
   const auto relative = [&](int axis) SHEAF_LAMBDA {
-    return hn::Sub(hn::Load(d, packet.origin[axis]), hn::Set(d, block[axis * n + i]));
+    return hn::Sub(hn::LoadU(d, rays.origin(axis)), hn::Set(d, block[axis * n + i]));
   };
-  M met = MayHitSphere(d, relative(0), relative(1), relative(2), hn::Load(d, packet.direction[0]),
-                       hn::Load(d, packet.direction[1]), hn::Load(d, packet.direction[2]),
-                       hn::Load(d, packet.screen), hn::Set(d, block[3 * n + i]), t_min, t_best);
+  M met = MayHitSphere(d, relative(0), relative(1), relative(2), hn::LoadU(d, rays.direction(0)),
+                       hn::LoadU(d, rays.direction(1)), hn::LoadU(d, rays.direction(2)),
+                       hn::LoadU(d, rays.screen()), hn::Set(d, block[3 * n + i]), t_min, t_best);
   met = hn::AndNot(hn::RebindMask(d, hn::Eq(source, ids)), hn::And(lanes, met));
-  if (hn::AllFalse(d, met)) return;
+  if (hn::AllFalse(d, met)) return met;
   const SpherePairs<Real> pairs = {
-      {{packet.origin[0], 1}, {packet.origin[1], 1}, {packet.origin[2], 1}},
-      {{packet.direction[0], 1}, {packet.direction[1], 1}, {packet.direction[2], 1}},
+      {{rays.origin(0), 1}, {rays.origin(1), 1}, {rays.origin(2), 1}},
+      {{rays.direction(0), 1}, {rays.direction(1), 1}, {rays.direction(2), 1}},
       {{block + i, 0}, {block + n + i, 0}, {block + 2 * n + i, 0}},
       {block + 3 * n + i, 0}};
   V t, leaves, t_rest;
   const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, leaves, t_rest);
-  if (hn::AllFalse(d, hit)) return;
-  KeepHits<kQuery>(d, packet, hit, t, leaves, t_rest, ids);
+  if (!hn::AllFalse(d, hit)) KeepHits<kQuery>(d, slots, hit, t, leaves, t_rest, ids);
+  return hit;
 }
 
 template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
@@ -126,7 +158,8 @@ HWY_INLINE void SpheresAgainstPacket(D d, const TreeView<Real>& tree, std::uint3
   const std::uint32_t* ids = IdsOf<PrimitiveKind::kSphere>(tree, leaf);
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
-    SphereAgainstPacket<kQuery>(d, packet, block, LeafCount(leaf), i, ids[i], lanes);
+    SphereAgainstRays<kQuery>(d, PacketRays<Real>{packet}, block, LeafCount(leaf), i, ids[i],
+                              lanes);
   }
 }
 
@@ -157,8 +190,8 @@ HWY_INLINE void TrianglesAgainstPacket(D d, const TreeView<Real>& tree, std::uin
       const auto z = [&](int vertex) SHEAF_LAMBDA {
         return hn::Sub(hn::Set(d, block[(3 * vertex + axis) * n + i]), oz);
       };
-      TriangleAgainstPacket<kQuery>(d, packet, axis, x(0), y(0), z(0), x(1), y(1), z(1), x(2), y(2),
-                                    z(2), ids[i], along);
+      TriangleAgainstRays<kQuery>(d, PacketRays<Real>{packet}, axis, x(0), y(0), z(0), x(1), y(1),
+                                  z(1), x(2), y(2), z(2), ids[i], along);
     }
   }
 }

@@ -101,25 +101,32 @@ HWY_INLINE void LoadPacket(const RayView<Real>& rays, const RayIntervals<Real>& 
   ForgetHits(packet);
 }
 
-// Rays at `positions[0, n)` of a batch, all of them traceable; the other lanes are kDone.
+// Rays at `positions[0, n)` of a batch, all of them traceable; the other lanes are kDone. Reads
+// whole vectors of positions.
 template <typename Real>
 HWY_INLINE void GatherPacket(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
                              const std::uint32_t* positions, std::uint32_t n,
                              Packet<Real>& packet) {
   const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  const auto wanted = LanesBelow(d, 0, n);
+  const auto at = hn::IfThenElse(hn::RebindMask(di, wanted), LoadIds(d, positions),
+                                 hn::Set(di, hn::TFromD<decltype(di)>{positions[0]}));
+  const auto gather = [&](const Real* field) SHEAF_LAMBDA { return GatherAt(d, field, at); };
+  hn::Store(gather(rays.origin_x), d, packet.origin[0]);
+  hn::Store(gather(rays.origin_y), d, packet.origin[1]);
+  hn::Store(gather(rays.origin_z), d, packet.origin[2]);
+  hn::Store(gather(rays.direction_x), d, packet.direction[0]);
+  hn::Store(gather(rays.direction_y), d, packet.direction[1]);
+  hn::Store(gather(rays.direction_z), d, packet.direction[2]);
+  const auto most = hn::Set(d, kDefaultTMax<Real>);
+  const auto t_min = intervals.t_min ? gather(intervals.t_min) : hn::Set(d, intervals.all_t_min);
+  const auto t_max = intervals.t_max ? gather(intervals.t_max) : hn::Set(d, intervals.all_t_max);
+  hn::Store(hn::Max(t_min, hn::Neg(most)), d, packet.t_min);
+  hn::Store(hn::IfThenElse(wanted, hn::Min(t_max, most), hn::Set(d, kDone<Real>)), d,
+            packet.t_best);
   for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
-    const std::uint32_t i = positions[lane < n ? lane : 0];
-    packet.origin[0][lane] = rays.origin_x[i];
-    packet.origin[1][lane] = rays.origin_y[i];
-    packet.origin[2][lane] = rays.origin_z[i];
-    packet.direction[0][lane] = rays.direction_x[i];
-    packet.direction[1][lane] = rays.direction_y[i];
-    packet.direction[2][lane] = rays.direction_z[i];
-    const Real t_min = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
-    packet.t_min[lane] = std::max(t_min, -kDefaultTMax<Real>);
-    const Real t_max = intervals.t_max ? intervals.t_max[i] : intervals.all_t_max;
-    packet.t_best[lane] = lane < n ? std::min(t_max, kDefaultTMax<Real>) : kDone<Real>;
-    packet.source[lane] = rays.source ? rays.source[i] : kNoPrimitive;
+    packet.source[lane] = rays.source ? rays.source[positions[lane < n ? lane : 0]] : kNoPrimitive;
   }
   ForgetHits(packet);
 }
@@ -165,14 +172,13 @@ HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packe
 }
 
 // Bit k: the direction's component along axis k has a minus sign.
-template <class D, typename Real = hn::TFromD<D>>
-HWY_INLINE hn::Vec<IdLanes<D>> Octants(D d, const Packet<Real>& packet) {
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Vec<IdLanes<D>> Octants(D /*d*/, V dx, V dy, V dz) {
   const IdLanes<D> di;
-  const auto sign = [&](int axis) SHEAF_LAMBDA {
-    return hn::ShiftRight<sizeof(Real) * 8 - 1>(
-        hn::BitCast(di, hn::Load(d, packet.direction[axis])));
+  const auto sign = [&](V v) SHEAF_LAMBDA {
+    return hn::ShiftRight<sizeof(hn::TFromD<D>) * 8 - 1>(hn::BitCast(di, v));
   };
-  return hn::Or(sign(0), hn::Or(hn::ShiftLeft<1>(sign(1)), hn::ShiftLeft<2>(sign(2))));
+  return hn::Or(sign(dx), hn::Or(hn::ShiftLeft<1>(sign(dy)), hn::ShiftLeft<2>(sign(dz))));
 }
 
 // FitsBoxes and SlabsOf of src/scalar/ray_slabs.h.
@@ -215,7 +221,10 @@ HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
     hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), scale)), d, packet.enter[axis]);
     hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), scale)), d, packet.leave[axis]);
   }
-  StoreIds(d, Octants(d, packet), packet.octant);
+  StoreIds(d,
+           Octants(d, hn::Load(d, packet.direction[0]), hn::Load(d, packet.direction[1]),
+                   hn::Load(d, packet.direction[2])),
+           packet.octant);
 }
 
 }  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE

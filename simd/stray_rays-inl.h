@@ -26,28 +26,37 @@ struct StrayRays {
   std::uint8_t direction_class[kCapacity];
 };
 
-// Puts the packet's open rays aside and returns true, unless all are of one class: then they are as
-// well where they are. The packet's leaf terms are there; its first ray is at position `first`.
+// What becomes of a vector of rays.
+enum class Company { kPacket, kStrays };
+
+// Puts the rays [i, i + lanes) of a batch that can hit anything aside, before any packet of them
+// exists, unless all are of one class: then they are as well where they are.
 template <typename Real>
-HWY_INLINE bool PutAside(const Packet<Real>& packet, std::uint32_t first, StrayRays& strays) {
+HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
+                            std::uint32_t i, std::uint32_t count, StrayRays& strays) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
   using Id = hn::TFromD<decltype(di)>;
-  const std::uint32_t open = OpenLanes(packet);
-  if (open == 0) return false;
+  const auto load = [&](const Real* field) SHEAF_LAMBDA { return hn::LoadU(d, field + i); };
+  const auto dx = load(rays.direction_x), dy = load(rays.direction_y), dz = load(rays.direction_z);
+  const auto traceable =
+      IsTraceable(d, load(rays.origin_x), load(rays.origin_y), load(rays.origin_z), dx, dy, dz,
+                  LoadTMin(d, intervals, i), LoadTMax(d, intervals, i));
+  const std::uint32_t open = MaskBits(d, hn::And(traceable, LanesBelow(d, i, count)));
+  // Rays that hit nothing need a packet, which says so.
+  if (open != (1u << LaneCount(d)) - 1) return Company::kPacket;
   alignas(kAlignment) std::uint32_t classes[kPacketSize<Real>];
-  const auto of_lane = hn::Or(hn::ShiftLeft<2>(Octants(d, packet)), LoadIds(d, packet.axis));
+  const auto of_lane =
+      hn::Or(hn::ShiftLeft<2>(Octants(d, dx, dy, dz)), DominantAxis(d, dx, dy, dz));
   StoreIds(d, of_lane, classes);
-  const auto one = hn::Set(di, Id{classes[std::countr_zero(open)]});
-  const std::uint32_t alike = MaskBits(d, hn::RebindMask(d, hn::Eq(of_lane, one)));
-  if ((open & ~alike) == 0) return false;
-  for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-    strays.position[strays.count] = first + lane;
+  const auto one = hn::Set(di, Id{classes[0]});
+  if (hn::AllTrue(d, hn::RebindMask(d, hn::Eq(of_lane, one)))) return Company::kPacket;
+  for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
+    strays.position[strays.count] = i + lane;
     strays.direction_class[strays.count] = static_cast<std::uint8_t>(classes[lane]);
     ++strays.count;
   }
-  return true;
+  return Company::kStrays;
 }
 
 // Positions by class, in their order within a class.

@@ -9,6 +9,7 @@
 #include "simd/query.h"
 #include "simd/stray_rays-inl.h"
 #include "simd/streams.h"
+#include "simd/trace_frustum-inl.h"
 #include "simd/trace_sheet-inl.h"
 #include "simd/tree.h"
 
@@ -23,31 +24,70 @@ HWY_INLINE void TraceAlone(const TreeView<Real>& tree, Packet<Real>& packet) {
   TracePacket<kQuery>(tree, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
 }
 
-// Traces the strays, and calls finish.Scatter(packet, positions, n) for every n of them.
-template <Query kQuery, typename Real, class Finish>
-HWY_NOINLINE void TraceStrays(const TreeView<Real>& tree, const RayView<Real>& rays,
-                              const RayIntervals<Real>& intervals, StrayRays& strays,
-                              const Finish& finish) {
+// Traces the strays.
+template <class Output, typename Real>
+HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& strays) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
-  std::uint32_t sorted[StrayRays::kCapacity];
+  std::uint32_t sorted[StrayRays::kCapacity + kMaxLanes];
   SortByDirection(strays, sorted);
   Packet<Real> packet;
   for (std::uint32_t i = 0; i < strays.count; i += lanes) {
     const std::uint32_t n = std::min(lanes, strays.count - i);
-    GatherPacket(rays, intervals, sorted + i, n, packet);
-    PrepareLeafTerms(tree, packet);
-    TraceAlone<kQuery>(tree, packet);
-    finish.Scatter(packet, sorted + i, n);
+    GatherPacket(batch.rays, batch.intervals, sorted + i, n, packet);
+    PrepareLeafTerms(batch.tree, packet);
+    TraceAlone<Output::kQuery>(batch.tree, packet);
+    batch.output.Scatter(packet, sorted + i, n);
   }
   strays.count = 0;
 }
 
-// Calls finish.Store(packet, i) for every packet of the batch once its rays are traced; i is the
-// position of its first ray. What becomes of strays comes later, through finish.Scatter.
-template <Query kQuery, typename Real, class Finish>
-HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays,
-                           const RayIntervals<Real>& intervals, std::uint32_t count,
-                           Coherence coherence, const Finish& finish) {
+// The rays [begin, end) as a sheet, where they can be one.
+template <class Output, typename Real>
+HWY_NOINLINE bool TraceAsSheet(const Batch<Output, Real>& batch, std::uint32_t begin,
+                               std::uint32_t end) {
+  const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  // Most batches are told by two rays.
+  const RayView<Real>& rays = batch.rays;
+  const std::uint32_t other = std::min(begin + 1, end - 1);
+  if (rays.direction_x[begin] != rays.direction_x[other] ||
+      rays.direction_y[begin] != rays.direction_y[other] ||
+      rays.direction_z[begin] != rays.direction_z[other]) {
+    return false;
+  }
+  Sheet<Real> sheet;
+  sheet.count = 0;
+  for (std::uint32_t i = begin; i < end; i += lanes) {
+    Packet<Real>& packet = sheet.packets[sheet.count++];
+    LoadPacket(rays, batch.intervals, i, batch.count, packet);
+    PrepareLeafTerms(batch.tree, packet);
+  }
+  if (!PrepareSheet(batch.tree, sheet)) return false;
+  TraceSheet<Output::kQuery>(batch.tree, sheet);
+  for (std::uint32_t k = 0; k < sheet.count; ++k) {
+    batch.output.Store(sheet.packets[k], begin + k * lanes);
+  }
+  return true;
+}
+
+// The rays [i, i + lanes) as a packet, or every leaf where boxes do not pay.
+template <class Output, typename Real>
+HWY_NOINLINE void TraceOnePacket(const Batch<Output, Real>& batch, std::uint32_t i) {
+  Packet<Real> packet;
+  LoadPacket(batch.rays, batch.intervals, i, batch.count, packet);
+  PrepareLeafTerms(batch.tree, packet);
+  if (batch.tree.skips_boxes) {
+    TraceEveryLeaf<Output::kQuery>(batch.tree, packet, OpenLanes(packet));
+  } else {
+    TraceAlone<Output::kQuery>(batch.tree, packet);
+  }
+  batch.output.Store(packet, i);
+}
+
+// A square of packets at a time: as a frustum, as a sheet, packet by packet, or put aside to be
+// sorted by direction.
+template <class Output, typename Real>
+HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence) {
+  const TreeView<Real>& tree = batch.tree;
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Frustum<Real> frustum;
   StrayRays strays;
@@ -55,37 +95,25 @@ HWY_INLINE void TraceBatch(const TreeView<Real>& tree, const RayView<Real>& rays
   const bool may_be_frustum =
       tree.node_count > 0 && !(tree.skips_boxes && lanes == 1) &&
       (coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin);
-  const bool may_be_sheet = coherence == Coherence::kUnknown;
-  for (std::uint32_t begin = 0; begin < count; begin += lanes * lanes) {
-    frustum.count = 0;
-    for (std::uint32_t i = begin; i < count && frustum.count < lanes; i += lanes) {
-      Packet<Real>& packet = frustum.packets[frustum.count++];
-      LoadPacket(rays, intervals, i, count, packet);
-      PrepareLeafTerms(tree, packet);
+  const bool may_be_sheet = coherence == Coherence::kUnknown && !tree.skips_boxes;
+  const bool may_stray = coherence != Coherence::kCoherent && !tree.skips_boxes;
+  for (std::uint32_t begin = 0; begin < batch.count; begin += lanes * lanes) {
+    const std::uint32_t end = std::min(batch.count, begin + lanes * lanes);
+    if (may_be_frustum && PrepareFrustum<Output::kQuery>(batch, begin, frustum)) {
+      TraceFrustum(batch, frustum);
+      continue;
     }
-    if (may_be_frustum && PrepareFrustum(tree, frustum)) {
-      TraceFrustum<kQuery>(tree, frustum);
-    } else if (tree.skips_boxes) {
-      for (std::uint32_t k = 0; k < frustum.count; ++k) {
-        TraceEveryLeaf<kQuery>(tree, frustum.packets[k], OpenLanes(frustum.packets[k]));
+    if (may_be_sheet && TraceAsSheet(batch, begin, end)) continue;
+    if (strays.count + lanes * lanes > StrayRays::kCapacity) TraceStrays(batch, strays);
+    for (std::uint32_t i = begin; i < end; i += lanes) {
+      if (may_stray &&
+          PutAside(batch.rays, batch.intervals, i, batch.count, strays) == Company::kStrays) {
+        continue;
       }
-    } else if (may_be_sheet && PrepareSheet(tree, frustum)) {
-      TraceSheet<kQuery>(tree, frustum);
-    } else {
-      if (strays.count + lanes * lanes > StrayRays::kCapacity) {
-        TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
-      }
-      for (std::uint32_t k = 0; k < frustum.count; ++k) {
-        Packet<Real>& packet = frustum.packets[k];
-        const bool is_aside =
-            coherence != Coherence::kCoherent && PutAside(packet, begin + k * lanes, strays);
-        if (!is_aside) TraceAlone<kQuery>(tree, packet);
-      }
+      TraceOnePacket(batch, i);
     }
-    for (std::uint32_t k = 0; k < frustum.count; ++k)
-      finish.Store(frustum.packets[k], begin + k * lanes);
   }
-  TraceStrays<kQuery>(tree, rays, intervals, strays, finish);
+  TraceStrays(batch, strays);
 }
 
 }  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE

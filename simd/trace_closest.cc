@@ -13,17 +13,30 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 struct ClosestOutput {
+  static constexpr Query kQuery = Query::kClosest;
   const RayIntervals<Real>& intervals;
   const HitOutput<Real>& hits;
 
-  // Rays [i, i + lanes).
+  // Where the hits of rays [i, i + lanes) are kept until Finish, after Clear.
+  HWY_INLINE HitSlots<Real> Slots(std::uint32_t i, Real* t_best) const {
+    return {t_best, hits.u + i, hits.v + i, hits.primitive + i};
+  }
+  template <class D>
+  HWY_INLINE void Clear(D d, std::uint32_t i) const {
+    hn::StoreU(hn::Zero(d), d, hits.u + i);
+    hn::StoreU(hn::Zero(d), d, hits.v + i);
+    StoreIds(d, hn::Set(IdLanes<D>(), kNoPrimitive), hits.primitive + i);
+  }
+  template <class D>
+  HWY_INLINE void Finish(D d, std::uint32_t i, const Real* t_best) const {
+    StoreT(d, i, LoadIds(d, hits.primitive + i), hn::Load(d, t_best));
+  }
+
+  // Rays [i, i + lanes), once they are traced.
   HWY_INLINE void Store(const Packet<Real>& packet, std::uint32_t i) const {
     const Lanes<Real> d;
     const auto id = LoadIds(d, packet.id);
-    const auto none = hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive);
-    const auto missed = hn::RebindMask(d, hn::Eq(id, none));
-    const auto t = hn::Load(d, packet.t_best);
-    hn::StoreU(hn::IfThenElse(missed, LoadTMax(d, intervals, i), t), d, hits.t + i);
+    StoreT(d, i, id, hn::Load(d, packet.t_best));
     hn::StoreU(hn::Load(d, packet.u), d, hits.u + i);
     hn::StoreU(hn::Load(d, packet.v), d, hits.v + i);
     StoreIds(d, id, hits.primitive + i);
@@ -40,14 +53,20 @@ struct ClosestOutput {
       hits.primitive[i] = packet.id[lane];
     }
   }
+
+  template <class D, class VI, class V>
+  HWY_INLINE void StoreT(D d, std::uint32_t i, VI id, V t) const {
+    const auto missed = hn::RebindMask(d, hn::Eq(id, hn::Set(IdLanes<D>(), kNoPrimitive)));
+    hn::StoreU(hn::IfThenElse(missed, LoadTMax(d, intervals, i), t), d, hits.t + i);
+  }
 };
 
 template <typename Real>
 void TraceClosestLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                        const RayIntervals<Real>& intervals, std::uint32_t count,
                        Coherence coherence, const HitOutput<Real>& hits) {
-  TraceBatch<Query::kClosest>(tree, rays, intervals, count, coherence,
-                              ClosestOutput<Real>{intervals, hits});
+  const ClosestOutput<Real> output{intervals, hits};
+  TraceBatch(Batch<ClosestOutput<Real>, Real>{tree, rays, intervals, count, output}, coherence);
 }
 
 SHEAF_NAME_KERNELS(TraceClosest);

@@ -11,22 +11,35 @@
 #endif
 
 #include "simd/query.h"
-#include "simd/trace_frustum-inl.h"
+#include "simd/trace_packet-inl.h"
 #include "simd/tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
+// Up to so many packets of a sheet go on as packets.
+template <Query kQuery, typename Real>
+HWY_INLINE std::uint32_t FewPacketsOfSheet() {
+  return std::max(1u, LaneCount(Lanes<Real>()) / (kQuery == Query::kOccluded ? 2 : 8));
+}
+
+template <typename Real>
+struct alignas(kAlignment) Sheet {
+  Packet<Real> packets[kPacketSize<Real>];
+  std::uint32_t count;  // packets in use
+  Beam<Real> beam;
+};
+
 // Whether all open rays have one direction, to the bit.
 template <typename Real>
-HWY_INLINE bool HasOneDirection(const Frustum<Real>& frustum) {
+HWY_INLINE bool HasOneDirection(const Sheet<Real>& sheet) {
   const Lanes<Real> d;
-  const Packet<Real>& first = frustum.packets[0];
+  const Packet<Real>& first = sheet.packets[0];
   const std::uint32_t open_in_first = OpenLanes(first);
   if (open_in_first == 0) return false;
   const int one = std::countr_zero(open_in_first);
-  for (std::uint32_t k = 0; k < frustum.count; ++k) {
-    const Packet<Real>& packet = frustum.packets[k];
+  for (std::uint32_t k = 0; k < sheet.count; ++k) {
+    const Packet<Real>& packet = sheet.packets[k];
     auto alike = AllLanes(d);
     for (int axis = 0; axis < 3; ++axis) {
       alike = hn::And(alike, hn::Eq(hn::Load(d, packet.direction[axis]),
@@ -47,15 +60,15 @@ HWY_INLINE Real LastT(const Packet<Real>& packet) {
 
 // Whether the packets' rays can go as a sheet: then their boxes and the beam are ready.
 template <typename Real>
-HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Frustum<Real>& frustum) {
-  if (!HasOneDirection(frustum)) return false;
+HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
+  if (!HasOneDirection(sheet)) return false;
   const Lanes<Real> d;
-  Beam<Real>& beam = frustum.beam;
-  const Packet<Real>& first = frustum.packets[0];
+  Beam<Real>& beam = sheet.beam;
+  const Packet<Real>& first = sheet.packets[0];
   const int one = std::countr_zero(OpenLanes(first));
   std::uint32_t unfit = 0;
-  for (std::uint32_t k = 0; k < frustum.count; ++k) {
-    Packet<Real>& packet = frustum.packets[k];
+  for (std::uint32_t k = 0; k < sheet.count; ++k) {
+    Packet<Real>& packet = sheet.packets[k];
     PrepareBoxes(tree, packet);
     // +0 and -0 are equal but of different octants.
     for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
@@ -74,10 +87,10 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Frustum<Real>& frustum)
     for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
       beam.enter_scale[axis][k] = beam.leave_scale[axis][k] = scale;
       beam.enter[axis][k] = beam.leave[axis][k] = 0;
-      const std::uint32_t open = k < frustum.count ? OpenLanes(frustum.packets[k]) : 0;
+      const std::uint32_t open = k < sheet.count ? OpenLanes(sheet.packets[k]) : 0;
       if (open == 0) continue;
       const auto lanes = LanesFromBits(d, open);
-      const Packet<Real>& packet = frustum.packets[k];
+      const Packet<Real>& packet = sheet.packets[k];
       const auto origin = hn::Load(d, packet.origin[axis]);
       const auto most = hn::Set(d, kDefaultTMax<Real>);
       const auto lowest = [&](auto v) SHEAF_LAMBDA {
@@ -100,7 +113,7 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Frustum<Real>& frustum)
   }
   for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
     beam.t_min[k] = 0;
-    beam.t_last[k] = k < frustum.count ? LastT(frustum.packets[k]) : kDone<Real>;
+    beam.t_last[k] = k < sheet.count ? LastT(sheet.packets[k]) : kDone<Real>;
   }
   beam.all_t_min = 0;
   return true;
@@ -108,18 +121,18 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Frustum<Real>& frustum)
 
 // PrepareSheet has said yes.
 template <Query kQuery, typename Real>
-HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Frustum<Real>& frustum) {
+HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
   const Lanes<Real> d;
-  TraceBeam(tree, frustum.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+  TraceBeam(tree, sheet.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     std::uint32_t packets = MaskBits(d, met);
     const bool are_few =
-        static_cast<std::uint32_t>(std::popcount(packets)) <= FewPackets<kQuery, Real>();
+        static_cast<std::uint32_t>(std::popcount(packets)) <= FewPacketsOfSheet<kQuery, Real>();
     if (!IsLeaf(child) && !are_few) return Visit::kDescend;
     for (; packets != 0; packets &= packets - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
-      Packet<Real>& packet = frustum.packets[k];
+      Packet<Real>& packet = sheet.packets[k];
       TracePacket<kQuery>(tree, packet, OpenLanes(packet), child);
-      frustum.beam.t_last[k] = LastT(packet);
+      sheet.beam.t_last[k] = LastT(packet);
     }
     return Visit::kDone;
   });
