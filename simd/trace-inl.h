@@ -56,11 +56,13 @@ HWY_NOINLINE bool TraceAsSheet(const Batch<Output, Real>& batch, std::uint32_t b
   }
   Sheet<Real> sheet;
   sheet.count = 0;
-  for (std::uint32_t i = begin; i < end; i += lanes) {
+  std::uint32_t i = begin;
+  do {
     Packet<Real>& packet = sheet.packets[sheet.count++];
     LoadPacket(rays, batch.intervals, i, batch.count, packet);
     PrepareLeafTerms(batch.tree, packet);
-  }
+    i += lanes;
+  } while (i < end);
   if (!PrepareSheet(batch.tree, sheet)) return false;
   TraceSheet<Output::kQuery>(batch.tree, sheet);
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
