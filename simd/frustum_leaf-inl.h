@@ -232,13 +232,14 @@ HWY_INLINE std::uint32_t CullSpheres(const Frustum<Real>& frustum, const Real* b
   return met;
 }
 
+// A leaf of any kind but triangles, whose spheres, or those around its primitives, are the screen.
 template <class Output, typename Real>
-HWY_INLINE void SpheresAgainstFrustum(const Batch<Output, Real>& batch, std::uint32_t child,
-                                      Frustum<Real>& frustum, std::uint32_t packets) {
+HWY_INLINE void ScreenedAgainstFrustum(const Batch<Output, Real>& batch, std::uint32_t child,
+                                       Frustum<Real>& frustum, std::uint32_t packets) {
   const Lanes<Real> d;
   const std::uint32_t n = LeafCount(child);
-  const Real* block = BlockOf<PrimitiveKind::kSphere>(batch.tree, child);
-  const std::uint32_t* const ids = IdsOf<PrimitiveKind::kSphere>(batch.tree, child);
+  const Real* block = BlockOf(batch.tree, child);
+  const std::uint32_t* const ids = batch.tree.of(LeafKind(child)).id + LeafFirst(child);
   for (; packets != 0; packets &= packets - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
     std::uint32_t hits = 0;
@@ -246,8 +247,8 @@ HWY_INLINE void SpheresAgainstFrustum(const Batch<Output, Real>& batch, std::uin
       const auto i = static_cast<std::uint32_t>(std::countr_zero(met));
       const auto open = hn::Gt(hn::Load(d, frustum.t_best[k]), hn::Set(d, kDone<Real>));
       hits |= MaskBits(
-          d, SphereAgainstRays<Output::kQuery>(d, FrustumRays<Output, Real>{batch, frustum, k},
-                                               block, n, i, ids[i], open));
+          d, ScreenedAgainstRays<Output::kQuery>(d, FrustumRays<Output, Real>{batch, frustum, k},
+                                                 LeafKind(child), block, n, i, ids[i], open));
     }
     frustum.without_hit[k] &= ~hits;
     if (hits != 0) UpdateEnd(batch, frustum, k);

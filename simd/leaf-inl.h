@@ -196,6 +196,13 @@ HWY_INLINE void TrianglesAgainstPacket(D d, const TreeView<Real>& tree, std::uin
   }
 }
 
+// The same for a leaf of any kind but triangles.
+template <Query kQuery, class D, class Rays, class M, typename Real = hn::TFromD<D>>
+HWY_INLINE M ScreenedAgainstRays(D d, const Rays& rays, PrimitiveKind /*kind*/, const Real* block,
+                                 std::uint32_t n, std::uint32_t i, std::uint32_t id, M lanes) {
+  return SphereAgainstRays<kQuery>(d, rays, block, n, i, id, lanes);
+}
+
 // Primitives of the leaf whose bits are set in `wanted`.
 template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
 HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,

@@ -58,7 +58,7 @@ HWY_NOINLINE void TraceFrustum(const Batch<Output, Real>& batch, Frustum<Real>& 
       if (HasTriangles(child)) {
         TrianglesAgainstFrustum(batch, child, frustum, packets);
       } else {
-        SpheresAgainstFrustum(batch, child, frustum, packets);
+        ScreenedAgainstFrustum(batch, child, frustum, packets);
       }
       return Visit::kDone;
     }
