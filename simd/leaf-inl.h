@@ -11,6 +11,7 @@
 
 #include <bit>
 
+#include "simd/disk-inl.h"
 #include "simd/packet-inl.h"
 #include "simd/query.h"
 #include "simd/sphere-inl.h"
@@ -120,11 +121,56 @@ HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V 
   return hit;
 }
 
-// Sphere `i` of a block of `n` against the rays of `lanes`. Returns the lanes that hit it, which
+// The fields of a block of n, from one primitive on: all lanes have it (stride 0), or each the
+// next.
+template <typename Real>
+struct BlockColumns {
+  const Real* first;
+  std::uint32_t n, stride;
+
+  HWY_INLINE PairColumn<Real> operator[](std::uint32_t field) const {
+    return {first + field * n, stride};
+  }
+};
+
+// What spheres and disks differ in, once the sphere around them passed the screen: which rays start
+// on them and see nothing of them, and the hit.
+struct SphereTest {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kSphere;
+
+  template <class D, class VI>
+  static HWY_INLINE hn::Mask<D> StartsOn(D d, VI source, VI id) {
+    return hn::RebindMask(d, hn::Eq(source, id));
+  }
+  template <Query kQuery, class D, class V, class M, class VI, typename Real = hn::TFromD<D>>
+  static HWY_INLINE M Hit(D d, const SpherePairs<Real>& pairs, const BlockColumns<Real>&, VI source,
+                          VI id, V t_min, V t_max, M screened, V& t, V& u, V& v) {
+    return HitSphere(d, pairs, source, id, t_min, t_max, screened, t, u, v);
+  }
+};
+
+struct DiskTest {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kDisk;
+
+  template <class D, class VI>
+  static HWY_INLINE hn::Mask<D> StartsOn(D d, VI source, VI id) {
+    const auto either_side = hn::Set(IdLanes<D>(), hn::TFromD<IdLanes<D>>{~kInsideBit});
+    return hn::RebindMask(d, hn::Eq(hn::And(source, either_side), id));
+  }
+  template <Query kQuery, class D, class V, class M, class VI, typename Real = hn::TFromD<D>>
+  static HWY_INLINE M Hit(D d, const SpherePairs<Real>& pairs, const BlockColumns<Real>& fields,
+                          VI /*source*/, VI /*id*/, V t_min, V t_max, M screened, V& t, V& u,
+                          V& v) {
+    const PairColumn<Real> normal[3] = {fields[4], fields[5], fields[6]};
+    return HitDisk<kQuery>(d, pairs, normal, t_min, t_max, screened, t, u, v);
+  }
+};
+
+// Primitive `i` of a block of `n` against the rays of `lanes`. Returns the lanes that hit it, which
 // are kept.
-template <Query kQuery, class D, class Rays, class M, typename Real = hn::TFromD<D>>
-HWY_NOINLINE M SphereAgainstRays(D d, const Rays& rays, const Real* block, std::uint32_t n,
-                                 std::uint32_t i, std::uint32_t id, M lanes) {
+template <Query kQuery, class Test, class D, class Rays, class M, typename Real = hn::TFromD<D>>
+HWY_NOINLINE M ScreenedAgainstRays(D d, const Rays& rays, const Real* block, std::uint32_t n,
+                                   std::uint32_t i, std::uint32_t id, M lanes) {
   using V = hn::Vec<D>;
   const IdLanes<D> di;
   using Id = hn::TFromD<IdLanes<D>>;
@@ -138,28 +184,30 @@ HWY_NOINLINE M SphereAgainstRays(D d, const Rays& rays, const Real* block, std::
   M met = MayHitSphere(d, relative(0), relative(1), relative(2), hn::LoadU(d, rays.direction(0)),
                        hn::LoadU(d, rays.direction(1)), hn::LoadU(d, rays.direction(2)),
                        hn::LoadU(d, rays.screen()), hn::Set(d, block[3 * n + i]), t_min, t_best);
-  met = hn::AndNot(hn::RebindMask(d, hn::Eq(source, ids)), hn::And(lanes, met));
+  met = hn::AndNot(Test::StartsOn(d, source, ids), hn::And(lanes, met));
   if (hn::AllFalse(d, met)) return met;
+  const BlockColumns<Real> fields = {block + i, n, 0};
   const SpherePairs<Real> pairs = {
       {{rays.origin(0), 1}, {rays.origin(1), 1}, {rays.origin(2), 1}},
       {{rays.direction(0), 1}, {rays.direction(1), 1}, {rays.direction(2), 1}},
-      {{block + i, 0}, {block + n + i, 0}, {block + 2 * n + i, 0}},
-      {block + 3 * n + i, 0}};
-  V t, leaves, t_rest;
-  const M hit = HitSphere(d, pairs, source, ids, t_min, t_best, met, t, leaves, t_rest);
-  if (!hn::AllFalse(d, hit)) KeepHits<kQuery>(d, slots, hit, t, leaves, t_rest, ids);
+      {fields[0], fields[1], fields[2]},
+      fields[3]};
+  V t, u, v;  // by the names of the kind: HitFields
+  const M hit =
+      Test::template Hit<kQuery>(d, pairs, fields, source, ids, t_min, t_best, met, t, u, v);
+  if (!hn::AllFalse(d, hit)) KeepHits<kQuery>(d, slots, hit, t, u, v, ids);
   return hit;
 }
 
-template <Query kQuery, class D, class M, typename Real = hn::TFromD<D>>
-HWY_INLINE void SpheresAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
-                                     std::uint32_t wanted, Packet<Real>& packet, M lanes) {
-  const Real* block = BlockOf<PrimitiveKind::kSphere>(tree, leaf);
-  const std::uint32_t* ids = IdsOf<PrimitiveKind::kSphere>(tree, leaf);
+template <Query kQuery, class Test, class D, class M, typename Real = hn::TFromD<D>>
+HWY_INLINE void EachAgainstPacket(D d, const TreeView<Real>& tree, std::uint32_t leaf,
+                                  std::uint32_t wanted, Packet<Real>& packet, M lanes) {
+  const Real* block = BlockOf<Test::kKind>(tree, leaf);
+  const std::uint32_t* ids = IdsOf<Test::kKind>(tree, leaf);
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(wanted));
-    SphereAgainstRays<kQuery>(d, PacketRays<Real>{packet}, block, LeafCount(leaf), i, ids[i],
-                              lanes);
+    ScreenedAgainstRays<kQuery, Test>(d, PacketRays<Real>{packet}, block, LeafCount(leaf), i,
+                                      ids[i], lanes);
   }
 }
 
@@ -198,9 +246,12 @@ HWY_INLINE void TrianglesAgainstPacket(D d, const TreeView<Real>& tree, std::uin
 
 // The same for a leaf of any kind but triangles.
 template <Query kQuery, class D, class Rays, class M, typename Real = hn::TFromD<D>>
-HWY_INLINE M ScreenedAgainstRays(D d, const Rays& rays, PrimitiveKind /*kind*/, const Real* block,
+HWY_INLINE M ScreenedAgainstRays(D d, const Rays& rays, PrimitiveKind kind, const Real* block,
                                  std::uint32_t n, std::uint32_t i, std::uint32_t id, M lanes) {
-  return SphereAgainstRays<kQuery>(d, rays, block, n, i, id, lanes);
+  if (kind == PrimitiveKind::kDisk) {
+    return ScreenedAgainstRays<kQuery, DiskTest>(d, rays, block, n, i, id, lanes);
+  }
+  return ScreenedAgainstRays<kQuery, SphereTest>(d, rays, block, n, i, id, lanes);
 }
 
 // Primitives of the leaf whose bits are set in `wanted`.
@@ -211,7 +262,9 @@ HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32
     case PrimitiveKind::kTriangle:
       return TrianglesAgainstPacket<kQuery>(d, tree, leaf, wanted, packet, lanes);
     case PrimitiveKind::kSphere:
-      return SpheresAgainstPacket<kQuery>(d, tree, leaf, wanted, packet, lanes);
+      return EachAgainstPacket<kQuery, SphereTest>(d, tree, leaf, wanted, packet, lanes);
+    case PrimitiveKind::kDisk:
+      return EachAgainstPacket<kQuery, DiskTest>(d, tree, leaf, wanted, packet, lanes);
   }
 }
 
@@ -272,9 +325,9 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
   }
 }
 
-template <Query kQuery, typename Real>
-HWY_INLINE void SpheresAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
-                                  Packet<Real>& packet, std::uint32_t lane) {
+template <Query kQuery, class Test, typename Real>
+HWY_INLINE void ScreenedAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
+                                   Packet<Real>& packet, std::uint32_t lane) {
   const LeafLanes<Real> d;
   using V = hn::Vec<LeafLanes<Real>>;
   const std::uint32_t n = LeafCount(leaf), source = packet.source[lane];
@@ -282,8 +335,8 @@ HWY_INLINE void SpheresAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf
   using Id = hn::TFromD<decltype(di)>;
   alignas(kAlignment) Real ts[kMaxLeafSize], us[kMaxLeafSize], vs[kMaxLeafSize];
   const auto t_min = hn::Set(d, packet.t_min[lane]);
-  const Real* block = BlockOf<PrimitiveKind::kSphere>(tree, leaf);
-  const std::uint32_t* ids_of = IdsOf<PrimitiveKind::kSphere>(tree, leaf);
+  const Real* block = BlockOf<Test::kKind>(tree, leaf);
+  const std::uint32_t* ids_of = IdsOf<Test::kKind>(tree, leaf);
   const auto sources = hn::Set(di, Id{source});
   for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
     const auto ids = LoadIds(d, ids_of + i);
@@ -296,22 +349,23 @@ HWY_INLINE void SpheresAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf
         hn::Set(d, packet.direction[1][lane]), hn::Set(d, packet.direction[2][lane]),
         hn::Set(d, packet.screen[lane]), hn::LoadU(d, block + 3 * n + i), t_min, t_best);
     met = hn::And(met, LanesBelow(d, i, n));
-    met = hn::AndNot(hn::RebindMask(d, hn::Eq(sources, ids)), met);
+    met = hn::AndNot(Test::StartsOn(d, sources, ids), met);
     if (hn::AllFalse(d, met)) continue;
+    const BlockColumns<Real> fields = {block + i, n, 1};
     const SpherePairs<Real> pairs = {
         {{packet.origin[0] + lane, 0}, {packet.origin[1] + lane, 0}, {packet.origin[2] + lane, 0}},
         {{packet.direction[0] + lane, 0},
          {packet.direction[1] + lane, 0},
          {packet.direction[2] + lane, 0}},
-        {{block + i, 1}, {block + n + i, 1}, {block + 2 * n + i, 1}},
-        {block + 3 * n + i, 1}};
-    V t, leaves, t_rest;
-    std::uint32_t hits =
-        MaskBits(d, HitSphere(d, pairs, sources, ids, t_min, t_best, met, t, leaves, t_rest));
+        {fields[0], fields[1], fields[2]},
+        fields[3]};
+    V t, u, v;
+    std::uint32_t hits = MaskBits(
+        d, Test::template Hit<kQuery>(d, pairs, fields, sources, ids, t_min, t_best, met, t, u, v));
     if (hits == 0) continue;
     hn::Store(t, d, ts);
-    hn::Store(leaves, d, us);
-    hn::Store(t_rest, d, vs);
+    hn::Store(u, d, us);
+    hn::Store(v, d, vs);
     for (; hits != 0; hits &= hits - 1) {
       const int k = std::countr_zero(hits);
       KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], ids_of[i + static_cast<std::uint32_t>(k)]);
@@ -326,7 +380,9 @@ HWY_INLINE void LeafAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf, P
     case PrimitiveKind::kTriangle:
       return TrianglesAgainstRay<kQuery>(tree, leaf, packet, lane);
     case PrimitiveKind::kSphere:
-      return SpheresAgainstRay<kQuery>(tree, leaf, packet, lane);
+      return ScreenedAgainstRay<kQuery, SphereTest>(tree, leaf, packet, lane);
+    case PrimitiveKind::kDisk:
+      return ScreenedAgainstRay<kQuery, DiskTest>(tree, leaf, packet, lane);
   }
 }
 

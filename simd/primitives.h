@@ -11,8 +11,8 @@
 namespace sheaf {
 
 // In the order in which a tree keeps them.
-enum class PrimitiveKind : std::uint32_t { kTriangle, kSphere };
-inline constexpr std::uint32_t kKindCount = 2;
+enum class PrimitiveKind : std::uint32_t { kTriangle, kSphere, kDisk };
+inline constexpr std::uint32_t kKindCount = 3;
 inline constexpr std::uint32_t kMaxFields = 9;  // of a primitive of any kind
 
 constexpr std::size_t IndexOf(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
@@ -63,11 +63,32 @@ struct SphereArrays {
   }
 };
 
+template <typename Real>
+struct DiskArrays {
+  using Number = Real;
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kDisk;
+  static constexpr const char* kName = "disk";
+  static constexpr std::uint32_t kFieldCount = 7;
+
+  std::uint32_t count;
+  const Real *center_x, *center_y, *center_z;
+  const Real* radius;  // NaN: never hit (stands for radius 0 and for a normal of 0)
+  const Real *normal_x, *normal_y, *normal_z;  // of the front, of any length
+  const std::uint32_t* id;
+
+  template <typename Self, typename F>
+  static constexpr void ForEachField(Self& self, F f) {
+    f(self.center_x), f(self.center_y), f(self.center_z), f(self.radius);
+    f(self.normal_x), f(self.normal_y), f(self.normal_z);
+  }
+};
+
 // All kinds share one range of ids.
 template <typename Real>
 struct GeometryView {
   SphereArrays<Real> spheres;
   TriangleArrays<Real> triangles;
+  DiskArrays<Real> disks;
 };
 
 // Calls f(arrays) for each kind, in the order of the enumerators.
@@ -75,6 +96,7 @@ template <typename View, typename F>
 constexpr void ForEachKind(View& geometry, F f) {
   f(geometry.triangles);
   f(geometry.spheres);
+  f(geometry.disks);
 }
 
 // Calls f(arrays) with empty arrays of a kind, for their type.
@@ -84,9 +106,11 @@ constexpr auto WithKind(PrimitiveKind kind, F f) {
     case PrimitiveKind::kTriangle:
       return f(TriangleArrays<Real>{});
     case PrimitiveKind::kSphere:
+      return f(SphereArrays<Real>{});
+    case PrimitiveKind::kDisk:
       break;
   }
-  return f(SphereArrays<Real>{});
+  return f(DiskArrays<Real>{});
 }
 
 constexpr const char* NameOf(PrimitiveKind kind) {

@@ -10,7 +10,8 @@
 // the others would gain nothing.
 #define SHEAF_SURFACE_KERNELS(X) \
   X(TriangleSurfaces, kTriangle) \
-  X(SphereSurfaces, kSphere)
+  X(SphereSurfaces, kSphere)     \
+  X(DiskSurfaces, kDisk)
 #define SHEAF_FAST_SURFACE_KERNELS(X) X(SphereSurfaces, kSphere)
 
 namespace sheaf {

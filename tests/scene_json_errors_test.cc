@@ -115,13 +115,16 @@ TEST_CASE("every mistake is named, with its line and path") {
       {Shape(R"("sphere": {"center": [0, 0, 2e30], "radius": 1})"),
        "f:1: /objects/0/sphere/center/2: expected a number in [-1e30, 1e30], found 2e+30"},
       {Shape(R"("name": "x")"),
-       "f:1: /objects/0: missing key; give one of \"sphere\", \"quad\", \"triangle\", \"mesh\", "
+       "f:1: /objects/0: missing key; give one of \"sphere\", \"disk\", \"quad\", \"triangle\", "
+       "\"mesh\", "
        "\"include\""},
       {Shape(R"("quad": {}, "sphere": {"center": [0, 0, 0], "radius": 1})"),
-       "f:1: /objects/0/sphere: conflicts with \"quad\"; give one of \"sphere\", \"quad\", "
+       "f:1: /objects/0/sphere: conflicts with \"quad\"; give one of \"sphere\", \"disk\", "
+       "\"quad\", "
        "\"triangle\", \"mesh\", \"include\""},
       {Shape(R"("sphere": {"center": [0, 0, 0], "radius": 1}, "quad": {})"),
-       "f:1: /objects/0/quad: conflicts with \"sphere\"; give one of \"sphere\", \"quad\", "
+       "f:1: /objects/0/quad: conflicts with \"sphere\"; give one of \"sphere\", \"disk\", "
+       "\"quad\", "
        "\"triangle\", \"mesh\", \"include\""},
       {Object(R"("sphere": {"center": [0, 0, 0], "radius": 1})"),
        "f:1: /objects/0/material: missing key"},

@@ -155,6 +155,7 @@ json CompleteScene() {
                      {"matrix": [[1, 0, 0, 5], [0, 1, 0, 6], [0, 0, 2, 7]]}]},
       {"include": "schema-part.json", "transform": {"scale": 2}},
       {"name": "a", "sphere": {"center": [0, 0, 0], "radius": 1}, "material": "m"},
+      {"name": "d", "disk": {"center": [0, 0, 0], "radius": 1, "normal": [0, 1, 0]}, "material": "m"},
       {"name": "b", "quad": {"corners": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]},
        "material": "m"},
       {"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],

@@ -19,9 +19,9 @@ inline bool AreFinite(const float* x, int count) {
 // The rules of a kind. They take the fields of one primitive, in the order of its arrays'
 // ForEachField.
 //   Fault: "", or what is wrong with numbers that a user gave.
-//   IsHittable: false for a triangle without area, a sphere of radius 0: what no ray may hit.
-//   kMarkedField: which is NaN in the arrays of what is not hittable.
-//   ExactBounds: along an axis, of finite fields, rounded outward.
+//   IsHittable: false for a triangle without area, a sphere or disk of radius 0: what no ray may
+//   hit. kMarkedField: which is NaN in the arrays of what is not hittable. ExactBounds: along an
+//   axis, of finite fields, rounded outward.
 template <PrimitiveKind kKind>
 struct Rules;
 
@@ -66,6 +66,39 @@ struct Rules<PrimitiveKind::kSphere> {
     const double radius = std::abs(static_cast<double>(sphere[3]));
     lower = RoundDown(-SumUp(-center, radius));
     upper = RoundUp(SumUp(center, radius));
+  }
+};
+
+template <>
+struct Rules<PrimitiveKind::kDisk> {
+  static constexpr int kMarkedField = 3;
+
+  static const char* Fault(const float* disk) {
+    return !AreFinite(disk, 3)                            ? "a coordinate is not finite"
+           : !std::isfinite(disk[3])                      ? "the radius is not finite"
+           : disk[3] < 0                                  ? "the radius is negative"
+           : !AreFinite(disk + 4, 3)                      ? "the normal is not finite"
+           : disk[4] == 0 && disk[5] == 0 && disk[6] == 0 ? "the normal is 0"
+                                                          : "";
+  }
+  template <typename Real>
+  static bool IsHittable(const Real* disk) {
+    return disk[3] > 0 && (disk[4] != 0 || disk[5] != 0 || disk[6] != 0);
+  }
+  template <typename Real>
+  static void ExactBounds(const Real* disk, int axis, float& lower, float& upper) {
+    // Along axis k the disk reaches r times the sine of the normal's angle with k. The factor
+    // covers the rounding of that.
+    const auto square = [&](int k) {
+      const double n = static_cast<double>(disk[4 + k % 3]);
+      return n * n;
+    };
+    const double across = square(axis + 1) + square(axis + 2);
+    const double sine = std::sqrt(across / (across + square(axis)));
+    const double center = static_cast<double>(disk[axis]);
+    const double reach = std::abs(static_cast<double>(disk[3])) * sine * (1 + 0x1p-48);
+    lower = RoundDown(-SumUp(-center, reach));
+    upper = RoundUp(SumUp(center, reach));
   }
 };
 

@@ -69,6 +69,18 @@ Shape ReadSphere(const JsonCursor& value) {
   return sphere;
 }
 
+Shape ReadDisk(const JsonCursor& value) {
+  Disk disk;
+  JsonObject object(value);
+  ReadVector(object.Required("center"), &disk.center);
+  object.Required("radius").Read(kRadius, &disk.radius);
+  if (const JsonCursor normal = object.Optional("normal"); normal.present()) {
+    ReadDirection(normal, &disk.normal);
+  }
+  object.Finish();
+  return disk;
+}
+
 // A quad that is degenerate, bent (by more than 1e-6 of its size) or not convex is an error.
 Shape ReadQuad(const JsonCursor& value) {
   Quad quad{};
@@ -108,6 +120,7 @@ Json TriangleJson(const Triangle& triangle) {
 // A mesh's file is the reader's business whose scene this is.
 constexpr KeyedReader<Shape> kShapes[] = {
     {"sphere", &ReadSphere},
+    {"disk", &ReadDisk},
     {"quad", &ReadQuad},
     {"triangle", &ReadTriangle},
     {"mesh", [](const JsonCursor& value) -> Shape { return ReadMesh(value); }}};
@@ -126,6 +139,12 @@ Json ShapeJson(const Shape& shape) {
       shape,
       [](const Sphere& sphere) -> Json {
         return {{"sphere", {{"center", VectorJson(sphere.center)}, {"radius", sphere.radius}}}};
+      },
+      [](const Disk& disk) -> Json {
+        return {{"disk",
+                 {{"center", VectorJson(disk.center)},
+                  {"radius", disk.radius},
+                  {"normal", VectorJson(disk.normal)}}}};
       },
       [](const Quad& quad) -> Json {
         return {{"quad", {{"corners", PointsJson(quad.corners)}}}};

@@ -231,6 +231,10 @@ std::string PovText(const Scene& scene, const Camera& camera) {
     Match(
         object.shape,
         [&](const Sphere& sphere) { WriteSphere(out, sphere, material, object.material); },
+        [&](const Disk& disk) {
+          fmt::format_to(out, "disc {{ {}, {}, {} texture {{ T{} }} }}\n", Vector(disk.center),
+                         Vector(disk.normal), disk.radius, object.material);
+        },
         [&](const Quad& quad) {
           fmt::format_to(out, "mesh {{\n");
           WriteTriangle(out, quad.corners[0], quad.corners[1], quad.corners[2]);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "simd/primitives.h"
+#include "src/scalar/disk.h"
 #include "src/scalar/ray.h"
 #include "src/scalar/sphere.h"
 #include "src/scalar/surface.h"
@@ -42,6 +43,15 @@ SHEAF_INLINE std::optional<Hit<Real>> HitPrimitive(const Ray<Real>& ray,
   return Hit<Real>{hit->t, spheres.id[i], hit->leaves, hit->t_rest};
 }
 
+template <typename Real>
+SHEAF_INLINE std::optional<Hit<Real>> HitPrimitive(const Ray<Real>& ray,
+                                                   const RayTerms<Real>& /*terms*/,
+                                                   const DiskArrays<Real>& disks, std::uint32_t i) {
+  const auto hit = HitDisk(ray, disks, i);
+  if (!hit) return std::nullopt;
+  return Hit<Real>{hit->t, disks.id[i], hit->u, hit->v};
+}
+
 // SurfaceAt: what the ray sees of primitive `i`, which it hits.
 
 template <typename Real>
@@ -54,6 +64,12 @@ template <typename Real>
 Surface<Real> SurfaceAt(const Ray<Real>& ray, const Hit<Real>& hit,
                         const SphereArrays<Real>& spheres, std::uint32_t i) {
   return SphereSurface(ray, hit, spheres, i);
+}
+
+template <typename Real>
+Surface<Real> SurfaceAt(const Ray<Real>& ray, const Hit<Real>& hit, const DiskArrays<Real>& disks,
+                        std::uint32_t i) {
+  return DiskSurface(ray, hit, disks, i);
 }
 
 template <typename Real>

@@ -19,6 +19,25 @@ ShapePrimitive TrianglePrimitive(const Triangle& triangle) {
   return primitive;
 }
 
+// How far a disk reaches from its center along each axis.
+Vec3d ReachOf(const Disk& disk) {
+  const Vec3d square = disk.normal * disk.normal;
+  const double sum = square.x + square.y + square.z;
+  const auto along = [&](double a, double b) {
+    return sum > 0 ? disk.radius * std::sqrt((a + b) / sum) : 0.0;
+  };
+  return {along(square.y, square.z), along(square.z, square.x), along(square.x, square.y)};
+}
+
+// The vector scaled by a power of two, which rounds nothing, so that its largest component is in
+// [1, 2): no square of it leaves the range of float.
+Vec3d WithUnitExponent(const Vec3d& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0)) return v;
+  const int down = -std::ilogb(largest);
+  return {std::scalbn(v.x, down), std::scalbn(v.y, down), std::scalbn(v.z, down)};
+}
+
 const char* MoveMesh(const Transform& transform, Mesh& mesh) {
   const glm::dmat3& linear = transform.linear;
   // Normals go with the cofactors: the inverse transposed, without its scale.
@@ -50,6 +69,11 @@ void ForEachExtreme(const Shape& shape, const std::function<void(const Vec3d&)>&
         include(sphere.center - sphere.radius);
         include(sphere.center + sphere.radius);
       },
+      [&](const Disk& disk) {
+        const Vec3d reach = ReachOf(disk);
+        include(disk.center - reach);
+        include(disk.center + reach);
+      },
       [&](const Quad& quad) {
         for (const Vec3d& corner : quad.corners) include(corner);
       },
@@ -72,6 +96,15 @@ std::string TransformShape(const Transform& transform, Shape* shape) {
         sphere.radius *= transform.Scale();
         return "";
       },
+      [&](Disk& disk) {
+        if (!transform.KeepsSpheres()) {
+          return "a disk can be turned, moved and scaled alike along all axes only";
+        }
+        disk.center = transform.Point(disk.center);
+        disk.radius *= transform.Scale();
+        disk.normal = transform.Vector(disk.normal);
+        return "";
+      },
       [&](Quad& quad) {
         for (Vec3d& corner : quad.corners) corner = transform.Point(corner);
         return "";
@@ -89,6 +122,11 @@ void ForEachPrimitive(const Shape& shape, const std::function<void(const ShapePr
       [&](const Sphere& sphere) {
         const Vec3d& c = sphere.center;
         add({PrimitiveKind::kSphere, {c.x, c.y, c.z, sphere.radius}, {}});
+      },
+      [&](const Disk& disk) {
+        const Vec3d& c = disk.center;
+        const Vec3d n = WithUnitExponent(disk.normal);
+        add({PrimitiveKind::kDisk, {c.x, c.y, c.z, disk.radius, n.x, n.y, n.z}, {}});
       },
       [&](const Quad& quad) {
         const auto& c = quad.corners;

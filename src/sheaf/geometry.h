@@ -1,4 +1,4 @@
-// Triangles and spheres to trace rays against: the library without the renderer.
+// Triangles, spheres and disks to trace rays against: the library without the renderer.
 //
 //   GeometryInput input;
 //   input.AddTriangles(vertices, indices);
@@ -37,6 +37,9 @@ class GeometryInput {
   // `spheres`: center x, y, z and radius of each, finite, the radius >= 0. A sphere of radius 0 is
   // never hit. Returns the object's id.
   std::uint32_t AddSpheres(std::span<const float> spheres) { return Add(1, spheres); }
+  // `disks`: center x, y, z, radius and normal x, y, z of each, finite, the radius >= 0, the normal
+  // of any length but 0. A disk of radius 0 is never hit. Returns the object's id.
+  std::uint32_t AddDisks(std::span<const float> disks) { return Add(2, disks); }
 
  private:
   friend struct GeometryAccess;
@@ -111,8 +114,8 @@ struct RayArrays {
   const float* direction_y = nullptr;
   const float* direction_z = nullptr;
   // The primitive that a ray starts on, Geometry::kNoPrimitive for none; null: none for all. A
-  // triangle is never hit by its own ray. A sphere is not either, or with Geometry::kInsideBit in
-  // the far root alone.
+  // triangle or a disk is never hit by its own ray. A sphere is not either, or with
+  // Geometry::kInsideBit in the far root alone.
   const std::uint32_t* source = nullptr;
 };
 
@@ -149,6 +152,7 @@ struct HitArrays {
   // Triangle: the barycentric weights of the second and the third vertex.
   // Sphere: u is 0 where the ray enters and 1 where it leaves; v is what rounding took from t, so
   // that t + v, summed in double, is the distance to twice the digits.
+  // Disk: its surface coordinates, 0 to 1 across the square around it, (0.5, 0.5) in the middle.
   float* u = nullptr;
   float* v = nullptr;
 };

@@ -72,6 +72,15 @@ struct Sphere {
   double radius = 1.0;  // >= 0; a sphere of radius 0 is never hit
 };
 
+// A flat circle, seen from both sides. Surface coordinates: (0.5, 0.5) in the middle, 0 and 1 where
+// the square around it begins and ends. u runs along x, v against y for a normal along z; for
+// others along the axes of Duff et al. 2017, docs/scene-format.md.
+struct Disk {
+  Vec3d center{0.0};
+  double radius = 1.0;          // >= 0; a disk of radius 0 is never hit
+  Vec3d normal{0.0, 0.0, 1.0};  // of the front, any length; a disk whose normal is 0 is never hit
+};
+
 // Front side: counter-clockwise. Surface coordinates: (0,0), (1,0), (0,1) unless `uv` says
 // otherwise.
 struct Triangle {
@@ -97,7 +106,7 @@ struct Mesh {
 
 struct Object {
   std::string name;  // may be empty
-  std::variant<Sphere, Quad, Triangle, Mesh> shape;
+  std::variant<Sphere, Quad, Triangle, Mesh, Disk> shape;
   std::uint32_t material = 0;  // index into Scene::materials
 };
 
