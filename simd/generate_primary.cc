@@ -28,15 +28,18 @@ void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const R
       oz = hn::Set(d, camera.eye[2]);
     V dx = hn::Set(d, camera.forward[0]), dy = hn::Set(d, camera.forward[1]),
       dz = hn::Set(d, camera.forward[2]);
-    if (camera.orthographic) {
-      ox = hn::Add(ox, across(0));
-      oy = hn::Add(oy, across(1));
-      oz = hn::Add(oz, across(2));
-    } else {
-      dx = hn::Add(dx, across(0));
-      dy = hn::Add(dy, across(1));
-      dz = hn::Add(dz, across(2));
-      Normalize(d, dx, dy, dz);
+    switch (camera.model) {
+      case CameraModel::kPerspective:
+        dx = hn::Add(dx, across(0));
+        dy = hn::Add(dy, across(1));
+        dz = hn::Add(dz, across(2));
+        Normalize(d, dx, dy, dz);
+        break;
+      case CameraModel::kOrthographic:
+        ox = hn::Add(ox, across(0));
+        oy = hn::Add(oy, across(1));
+        oz = hn::Add(oz, across(2));
+        break;
     }
     hn::StoreU(ox, d, rays.origin_x + i);
     hn::StoreU(oy, d, rays.origin_y + i);

@@ -84,11 +84,13 @@ struct LightData {
   Real cone_scale = 0, cone_offset = 0;
 };
 
+enum class CameraModel : std::uint32_t { kPerspective, kOrthographic };
+
 // Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
 // and b = half_height - (y + sy) steps up.
 template <typename Real>
 struct CameraData {
-  std::uint32_t orthographic;
+  CameraModel model;
   Real eye[3], forward[3];       // forward is a unit vector
   Real right[3], up[3];          // a pixel's step on the plane one unit ahead, or in scene units
   Real half_width, half_height;  // pixels

@@ -147,10 +147,11 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
     }
     cameras.push_back(&scene.cameras.front());
   }
-  const char* const aim = options.eye       ? "--eye"
-                          : options.look_at ? "--look-at"
-                          : options.fov     ? "--fov"
-                                            : nullptr;
+  const char* const aim = options.eye          ? "--eye"
+                          : options.look_at    ? "--look-at"
+                          : options.projection ? "--projection"
+                          : options.fov        ? "--fov"
+                                               : nullptr;
   const Camera& first = scene.cameras.front();
   if (aim != nullptr && std::find(cameras.begin(), cameras.end(), &first) == cameras.end()) {
     return Usage(fmt::format("{}: moves the scene's first camera, \"{}\", which is not chosen", aim,

@@ -4,6 +4,8 @@
 
 #include <variant>
 
+#include "src/scene/projection.h"
+
 namespace sheaf {
 namespace {
 
@@ -12,16 +14,18 @@ namespace {
 std::string SettingsText(const RenderOptions& options, const Camera& camera) {
   const Vec3d& eye = camera.eye;
   const Vec3d& look_at = camera.look_at;
-  const auto* perspective = std::get_if<Perspective>(&camera.projection);
-  const double view =
-      perspective ? perspective->fov_y : std::get<Orthographic>(camera.projection).height;
+  const bool perspective = std::holds_alternative<Perspective>(camera.projection);
+  const ProjectionKind& kind = KindOf(camera.projection);
+  const char* const name = perspective                            ? "fov"
+                           : kind.unit == ProjectionUnit::kLength ? kind.parameter
+                                                                  : kind.name;
   return fmt::format(
       "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
       "eye {} {} {}, look at {} {} {}, {} {}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
       options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
-      eye.z, look_at.x, look_at.y, look_at.z, perspective ? "fov" : "height", view);
+      eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection));
 }
 
 }  // namespace

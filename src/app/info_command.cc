@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
-#include <variant>
 
 #include "sheaf/scene.h"
 #include "sheaf/target.h"
@@ -20,6 +19,7 @@
 #include "src/core/build_info.h"
 #include "src/core/running_target.h"
 #include "src/formats/printable.h"
+#include "src/scene/projection.h"
 
 namespace sheaf {
 namespace {
@@ -68,13 +68,9 @@ Json MachineJson() {
 
 Json CameraJson(const Camera& camera) {
   Json json = {{"name", camera.name}};
-  if (const auto* perspective = std::get_if<Perspective>(&camera.projection)) {
-    json["projection"] = "perspective";
-    json["fov_y"] = perspective->fov_y;
-  } else {
-    json["projection"] = "orthographic";
-    json["height"] = std::get<Orthographic>(camera.projection).height;
-  }
+  const ProjectionKind& kind = KindOf(camera.projection);
+  json["projection"] = kind.name;
+  if (kind.unit != ProjectionUnit::kNone) json[kind.parameter] = ParameterOf(camera.projection);
   json["eye"] = VectorJson(camera.eye);
   json["look_at"] = VectorJson(camera.look_at);
   return json;
@@ -171,6 +167,14 @@ std::string MachineText(const Json& machine) {
       JoinNames(targets["usable"], ", "), TextOf(targets["chosen"]), TextOf(targets["lanes"]));
 }
 
+std::string ProjectionText(const Json& camera) {
+  const std::string name = TextOf(camera["projection"]);
+  const ProjectionKind& kind = KindOf(*ProjectionNamed(name));
+  if (kind.unit == ProjectionUnit::kNone) return name;
+  return fmt::format("{} {:g} {}", name, camera[kind.parameter].get<double>(),
+                     kind.unit == ProjectionUnit::kDegrees ? "degrees" : "units");
+}
+
 std::string SceneText(const Json& scene) {
   std::string text = fmt::format("\nscene       {}\n", TextOf(scene["path"]));
   auto out = std::back_inserter(text);
@@ -193,11 +197,8 @@ std::string SceneText(const Json& scene) {
                  VectorText(settings["ambient"]), settings["exposure"].get<double>(),
                  TextOf(settings["transfer"]));
   for (const Json& camera : scene["cameras"]) {
-    const bool perspective = camera["projection"] == "perspective";
-    fmt::format_to(out, "camera      {}: {} {:g}{}, eye {}, look at {}\n", TextOf(camera["name"]),
-                   TextOf(camera["projection"]),
-                   camera[perspective ? "fov_y" : "height"].get<double>(),
-                   perspective ? " degrees" : " units", VectorText(camera["eye"]),
+    fmt::format_to(out, "camera      {}: {}, eye {}, look at {}\n", TextOf(camera["name"]),
+                   ProjectionText(camera), VectorText(camera["eye"]),
                    VectorText(camera["look_at"]));
   }
   for (const Json& view : scene["views"]) {

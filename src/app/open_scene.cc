@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <utility>
-#include <variant>
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
+#include "src/scene/projection.h"
 
 namespace sheaf {
 namespace {
@@ -36,11 +36,12 @@ Status Aim(const SceneOptions& options, Scene* scene) {
   Camera& camera = scene->cameras.front();
   camera.eye = options.eye.value_or(camera.eye);
   camera.look_at = options.look_at.value_or(camera.look_at);
-  if (options.fov && std::holds_alternative<Orthographic>(camera.projection)) {
-    return Usage(fmt::format("--fov: the scene's first camera, \"{}\", is orthographic",
-                             Printable(camera.name)));
+  camera.projection = options.projection.value_or(camera.projection);
+  if (options.fov && KindOf(camera.projection).unit != ProjectionUnit::kDegrees) {
+    return Usage(fmt::format("--fov: the scene's first camera, \"{}\", is {}",
+                             Printable(camera.name), KindOf(camera.projection).name));
   }
-  if (options.fov) camera.projection = Perspective{*options.fov};
+  if (options.fov) SetParameter(camera.projection, *options.fov);
   const Vec3d ahead = camera.look_at - camera.eye;
   if (!(glm::length(ahead) > 0)) return Usage("--eye, --look-at: the camera looks at its own eye");
   if (glm::length(glm::cross(ahead, camera.up)) <=
@@ -57,6 +58,9 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options) {
             "Where the scene's first camera stands", &ParsePoint);
   AddParsed(app, "--look-at", options.look_at, "X,Y,Z", "a point like 1,2.5,-3",
             "What the scene's first camera looks at", &ParsePoint);
+  AddParsed(app, "--projection", options.projection, "NAME",
+            fmt::format("one of {}", fmt::join(ProjectionNames(), ", ")),
+            "Its projection, such as orthographic", &ProjectionNamed);
   AddParsed(app, "--fov", options.fov, "DEGREES", "a number between 0 and 180",
             "Its full vertical angle", [](const std::string& text) {
               const auto fov = ParseNumber(text, 0, 180);
@@ -71,6 +75,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options) {
 std::optional<std::string> GivenSceneOption(const SceneOptions& options) {
   if (options.eye) return "--eye";
   if (options.look_at) return "--look-at";
+  if (options.projection) return "--projection";
   if (options.fov) return "--fov";
   if (options.cone_sides) return "--cone-sides";
   if (options.allow_outside) return "--allow-outside";

@@ -19,8 +19,9 @@ namespace sheaf {
 struct SceneOptions {
   bool allow_outside = false;
   std::optional<int> cone_sides;
-  std::optional<Vec3d> eye, look_at;  // of the scene's first camera
-  std::optional<double> fov;          // likewise, degrees
+  std::optional<Vec3d> eye, look_at;     // of the scene's first camera
+  std::optional<Projection> projection;  // likewise
+  std::optional<double> fov;             // likewise, degrees
 };
 
 void AddSceneOptions(CLI::App& app, SceneOptions& options);

@@ -1,8 +1,11 @@
 #include "src/app/scene_summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <variant>
 
+#include "src/scene/projection.h"
 #include "src/scene/shapes.h"
 
 namespace sheaf {
@@ -69,15 +72,13 @@ SceneSummary Summarize(const Scene& scene) {
       {"mirror reflection", any_material([](const Material& m) { return !IsBlack(m.reflect); })},
       {"refraction and Fresnel reflection",
        any_material([](const Material& m) { return !IsBlack(m.transmit); })},
-      {"perspective cameras", any_camera([](const Camera& c) {
-         return std::holds_alternative<Perspective>(c.projection);
-       })},
-      {"orthographic cameras", any_camera([](const Camera& c) {
-         return std::holds_alternative<Orthographic>(c.projection);
-       })},
-      {"several samples a pixel", scene.settings.samples > 1},
-      {"sRGB transfer", scene.settings.transfer == Transfer::kSrgb},
   };
+  for (const ProjectionKind& kind : kProjectionKinds) {
+    const auto is_kind = [&](const Camera& c) { return &KindOf(c.projection) == &kind; };
+    summary.features.push_back({fmt::format("{} cameras", kind.name), any_camera(is_kind)});
+  }
+  summary.features.push_back({"several samples a pixel", scene.settings.samples > 1});
+  summary.features.push_back({"sRGB transfer", scene.settings.transfer == Transfer::kSrgb});
   return summary;
 }
 

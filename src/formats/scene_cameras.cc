@@ -1,44 +1,80 @@
 #include "src/formats/scene_cameras.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "src/core/match.h"
+#include "src/formats/suggest_name.h"
+#include "src/scene/projection.h"
 
 namespace sheaf {
 namespace {
 
-using Projection = decltype(Camera::projection);
-
-constexpr NumberRange kFovY{kSmallestPositive, 0x1.67fffffffffffp7, "a number in (0, 180)"};
-constexpr NumberRange kHeight{kSmallestPositive, 1e30, "a number in (0, 1e30]"};
-
-Projection ReadPerspective(const JsonCursor& value) {
-  Perspective perspective;
-  value.Read(kFovY, &perspective.fov_y);
-  return perspective;
+// `projection` with the number that `value` holds, if any.
+Projection ProjectionOf(const JsonCursor& value, Projection projection) {
+  const ProjectionKind& kind = KindOf(projection);
+  double number = ParameterOf(projection);
+  value.Read({kSmallestPositive, kind.largest, kind.range}, &number);
+  SetParameter(projection, number);
+  return projection;
 }
+
+Projection ReadPerspective(const JsonCursor& value) { return ProjectionOf(value, Perspective()); }
 
 Projection ReadOrthographic(const JsonCursor& value) {
-  Orthographic orthographic;
   JsonObject lens(value);
-  lens.Required("height").Read(kHeight, &orthographic.height);
+  const Projection projection = ProjectionOf(lens.Required("height"), Orthographic());
   lens.Finish();
-  return orthographic;
+  return projection;
 }
 
-// A camera without any of them is a perspective one.
+// The keys that say it without a name. A camera without any of them is a perspective one.
 constexpr KeyedReader<Projection> kProjections[] = {{"fov_y", &ReadPerspective},
                                                     {"orthographic", &ReadOrthographic}};
 
+// A name, or an object of one member, by the name: {"name": {"number's name": number}}.
+Projection ReadProjection(const JsonCursor& value) {
+  if (!value.Is(JsonKind::kObject)) {
+    std::string name;
+    if (!value.ReadString(&name)) return {};
+    if (const auto projection = ProjectionNamed(name)) return *projection;
+    value.Fail("unknown projection" + DidYouMean(name, ProjectionNames()));
+    return {};
+  }
+  JsonObject object(value);
+  Projection projection;
+  int count = 0;
+  for (const std::string_view name : ProjectionNames()) {
+    const JsonCursor member = object.Optional(name);
+    if (!member.present()) continue;
+    ++count;
+    projection = *ProjectionNamed(name);
+    JsonObject lens(member);
+    if (KindOf(projection).unit != ProjectionUnit::kNone) {
+      projection = ProjectionOf(lens.Optional(KindOf(projection).parameter), projection);
+    }
+    lens.Finish();
+  }
+  object.Finish();
+  if (count != 1) value.Fail("one projection has to stand here");
+  return projection;
+}
+
 void WriteProjection(const Projection& projection, Json* json) {
-  Match(
-      projection, [&](const Perspective& perspective) { (*json)["fov_y"] = perspective.fov_y; },
-      [&](const Orthographic& orthographic) {
-        (*json)["orthographic"] = {{"height", orthographic.height}};
-      });
+  const ProjectionKind& kind = KindOf(projection);
+  const double number = ParameterOf(projection);
+  if (std::holds_alternative<Perspective>(projection)) {
+    (*json)["fov_y"] = number;
+  } else if (std::holds_alternative<Orthographic>(projection)) {
+    (*json)["orthographic"] = {{"height", number}};
+  } else if (kind.unit == ProjectionUnit::kNone) {
+    (*json)["projection"] = kind.name;
+  } else {
+    (*json)["projection"] = {{kind.name, {{kind.parameter, number}}}};
+  }
 }
 
 }  // namespace
@@ -53,8 +89,13 @@ Camera ReadCamera(const JsonCursor& value, NameTable* names) {
   const bool has_target = ReadVector(look_at, &camera.look_at);
   const JsonCursor up = object.Optional("up");
   const bool has_up = !up.present() || ReadDirection(up, &camera.up);
-  const JsonCursor projection = object.AtMostOneOf(KeysOf(kProjections));
-  if (projection.present()) camera.projection = ReadByKey(projection, kProjections);
+  const JsonCursor lens = object.AtMostOneOf(KeysOf(kProjections));
+  if (lens.present()) camera.projection = ReadByKey(lens, kProjections);
+  const JsonCursor projection = object.Optional("projection");
+  if (projection.present()) {
+    camera.projection = ReadProjection(projection);
+    if (lens.present()) projection.Fail(fmt::format("conflicts with \"{}\"", lens.key()));
+  }
   object.Finish();
 
   if (!has_eye || !has_target || !has_up) return camera;

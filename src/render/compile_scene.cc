@@ -187,9 +187,12 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
   double step = 0;
   Match(
       camera.projection,
-      [&](const Perspective& lens) { step = 2 * StrictTanDegrees(lens.fov_y / 2) / height; },
+      [&](const Perspective& lens) {
+        data.model = CameraModel::kPerspective;
+        step = 2 * StrictTanDegrees(lens.fov_y / 2) / height;
+      },
       [&](const Orthographic& lens) {
-        data.orthographic = 1;
+        data.model = CameraModel::kOrthographic;
         step = lens.height / height;
       });
   Store(camera.eye, data.eye);

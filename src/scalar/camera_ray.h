@@ -14,9 +14,14 @@ Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Rea
   // Counted from the picture's centre, where half pixels are exact.
   const Real a = (x + sx) - camera.half_width;
   const Real b = camera.half_height - (y + sy);
-  const Vec3<Real> across = FromArray(camera.right) * a + FromArray(camera.up) * b;
-  if (camera.orthographic) return {eye + across, forward};
-  return {eye, Normalize(forward + across)};
+  const auto across = [&] { return FromArray(camera.right) * a + FromArray(camera.up) * b; };
+  switch (camera.model) {
+    case CameraModel::kPerspective:
+      return {eye, Normalize(forward + across())};
+    case CameraModel::kOrthographic:
+      break;
+  }
+  return {eye + across(), forward};
 }
 
 }  // namespace sheaf::scalar

@@ -5,6 +5,7 @@
 
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
+#include "src/scene/projection.h"
 #include "src/scene/shapes.h"
 
 namespace sheaf {
@@ -60,9 +61,9 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     camera.eye = transform.Point(camera.eye);
     camera.look_at = transform.Point(camera.look_at);
     camera.up = transform.Vector(camera.up);
-    Match(
-        camera.projection, [](Perspective&) {},
-        [&](Orthographic& lens) { lens.height *= transform.Scale(); });
+    if (KindOf(camera.projection).unit == ProjectionUnit::kLength) {
+      SetParameter(camera.projection, ParameterOf(camera.projection) * transform.Scale());
+    }
   }
   return "";
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -150,12 +151,34 @@ struct Orthographic {
   double height = 2.0;  // of the picture in scene units, > 0
 };
 
+using Projection = std::variant<Perspective, Orthographic>;
+
+// What the number of a projection is, where it has one.
+enum class ProjectionUnit { kNone, kDegrees, kLength };
+
+// A kind of projection as scene files, the command and bindings name it.
+struct ProjectionKind {
+  const char* name;
+  const char* parameter;  // what its number is called; empty: it has none
+  ProjectionUnit unit;
+  double usual, largest;  // the number, which is above 0
+  const char* range;      // what a message says that it has to be
+};
+
+// By the index of the alternative of Projection.
+inline constexpr ProjectionKind kProjectionKinds[] = {
+    {"perspective", "fov_y", ProjectionUnit::kDegrees, 60, 0x1.67fffffffffffp7,
+     "a number in (0, 180)"},
+    {"orthographic", "height", ProjectionUnit::kLength, 2, 1e30, "a number in (0, 1e30]"},
+};
+static_assert(std::size(kProjectionKinds) == std::variant_size_v<Projection>);
+
 struct Camera {
   std::string name;
   Vec3d eye{0.0};
   Vec3d look_at{0.0, 0.0, -1.0};
   Vec3d up{0.0, 1.0, 0.0};
-  std::variant<Perspective, Orthographic> projection;
+  Projection projection;
 };
 
 // A named list of cameras, rendered together.
