@@ -90,7 +90,9 @@ bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   if (layer == "src/sheaf") return false;
   if (kPlain.count(header) || layer == "src/render") return true;
   if (layer == "src/bvh" || layer == "src/core") return header == "simd/kernels.h";
-  return layer == "src/scalar" && (header == "simd/pow_terms.h" || header == "simd/roundoffs.h");
+  return layer == "src/scalar" &&
+         (header == "simd/pow_terms.h" || header == "simd/sin_cos_terms.h" ||
+          header == "simd/roundoffs.h");
 }
 
 // Whether Highway is reached from `path` through headers of the tree.
