@@ -85,14 +85,18 @@ struct LightData {
 };
 
 enum class CameraModel : std::uint32_t { kPerspective, kOrthographic };
+inline constexpr CameraModel kLastCameraModel = CameraModel::kOrthographic;
 
 // Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
 // and b = half_height - (y + sy) steps up.
 template <typename Real>
 struct CameraData {
   CameraModel model;
-  Real eye[3], forward[3];       // forward is a unit vector
-  Real right[3], up[3];          // a pixel's step on the plane one unit ahead, or in scene units
+  Real eye[3], forward[3];  // forward is a unit vector
+  // A pixel's step on the plane one unit ahead, or in scene units; unit vectors where pixels are
+  // steps of angles.
+  Real right[3], up[3];
+  Real turns_x, turns_y;         // such a step to the right and up, in quarter turns
   Real half_width, half_height;  // pixels
 };
 

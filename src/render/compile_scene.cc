@@ -13,6 +13,7 @@
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
+#include "src/scene/projection.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -150,6 +151,20 @@ LightData<Real> CompileLight(const Light& light, const Settings& settings,
   return data;
 }
 
+// A pixel's step on the plane of a camera that has one; else 1.
+double PlaneStep(const ProjectionKind& kind, double number, int height) {
+  if (kind.surface == ProjectionSurface::kSphere) return 1;
+  switch (kind.unit) {
+    case ProjectionUnit::kNone:
+      break;
+    case ProjectionUnit::kDegrees:
+      return 2 * StrictTanDegrees(number / 2) / height;
+    case ProjectionUnit::kLength:
+      return number / height;
+  }
+  return 1;
+}
+
 }  // namespace
 
 template <typename Real>
@@ -184,17 +199,17 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
   const glm::dvec3 forward = Unit(camera.look_at - camera.eye);
   const glm::dvec3 right = Unit(CrossOf(forward, camera.up));
   const glm::dvec3 up = CrossOf(right, forward);
-  double step = 0;
-  Match(
-      camera.projection,
-      [&](const Perspective& lens) {
-        data.model = CameraModel::kPerspective;
-        step = 2 * StrictTanDegrees(lens.fov_y / 2) / height;
-      },
-      [&](const Orthographic& lens) {
-        data.model = CameraModel::kOrthographic;
-        step = lens.height / height;
-      });
+  static_assert(static_cast<std::size_t>(kLastCameraModel) + 1 == std::variant_size_v<Projection>);
+  data.model = static_cast<CameraModel>(camera.projection.index());
+  const ProjectionKind& kind = KindOf(camera.projection);
+  const double number = ParameterOf(camera.projection);
+  const double step = PlaneStep(kind, number, height);
+  if (kind.surface == ProjectionSurface::kSphere) {
+    // A number of degrees spans the height, alike in all directions; else the picture spans all.
+    const bool spans_all = kind.unit == ProjectionUnit::kNone;
+    data.turns_x = static_cast<Real>(spans_all ? 4.0 / width : number / 90 / height);
+    data.turns_y = static_cast<Real>(spans_all ? 2.0 / height : number / 90 / height);
+  }
   Store(camera.eye, data.eye);
   Store(forward, data.forward);
   Store(right * step, data.right);

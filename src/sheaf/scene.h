@@ -156,20 +156,25 @@ using Projection = std::variant<Perspective, Orthographic>;
 // What the number of a projection is, where it has one.
 enum class ProjectionUnit { kNone, kDegrees, kLength };
 
+// Where a projection's pixels lie even: on a plane ahead of the eye, or in angles around it.
+enum class ProjectionSurface { kPlane, kSphere };
+
 // A kind of projection as scene files, the command and bindings name it.
 struct ProjectionKind {
   const char* name;
   const char* parameter;  // what its number is called; empty: it has none
   ProjectionUnit unit;
+  ProjectionSurface surface;
   double usual, largest;  // the number, which is above 0
   const char* range;      // what a message says that it has to be
 };
 
 // By the index of the alternative of Projection.
 inline constexpr ProjectionKind kProjectionKinds[] = {
-    {"perspective", "fov_y", ProjectionUnit::kDegrees, 60, 0x1.67fffffffffffp7,
-     "a number in (0, 180)"},
-    {"orthographic", "height", ProjectionUnit::kLength, 2, 1e30, "a number in (0, 1e30]"},
+    {"perspective", "fov_y", ProjectionUnit::kDegrees, ProjectionSurface::kPlane, 60,
+     0x1.67fffffffffffp7, "a number in (0, 180)"},
+    {"orthographic", "height", ProjectionUnit::kLength, ProjectionSurface::kPlane, 2, 1e30,
+     "a number in (0, 1e30]"},
 };
 static_assert(std::size(kProjectionKinds) == std::variant_size_v<Projection>);
 
