@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
 #include "simd/math-inl.h"
+#include "simd/sin_cos-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
@@ -40,6 +41,33 @@ void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const R
         oy = hn::Add(oy, across(1));
         oz = hn::Add(oz, across(2));
         break;
+      case CameraModel::kEquirectangular: {
+        V sin_x, cos_x, sin_y, cos_y;
+        SinCos(d, hn::Mul(a, hn::Set(d, camera.turns_x)), sin_x, cos_x);
+        SinCos(d, hn::Mul(b, hn::Set(d, camera.turns_y)), sin_y, cos_y);
+        const auto toward = [&](V forward, int axis) SHEAF_LAMBDA {
+          const V level =
+              hn::Add(hn::Mul(forward, cos_x), hn::Mul(hn::Set(d, camera.right[axis]), sin_x));
+          return hn::Add(hn::Mul(level, cos_y), hn::Mul(hn::Set(d, camera.up[axis]), sin_y));
+        };
+        dx = toward(dx, 0);
+        dy = toward(dy, 1);
+        dz = toward(dz, 2);
+        Normalize(d, dx, dy, dz);
+        break;
+      }
+      case CameraModel::kFisheye: {
+        const V distance = hn::Sqrt(hn::Add(hn::Mul(a, a), hn::Mul(b, b)));
+        V sin, cos;
+        SinCos(d, hn::Mul(distance, hn::Set(d, camera.turns_y)), sin, cos);
+        const V zero = hn::Zero(d);
+        const V scale = hn::IfThenElse(hn::Gt(distance, zero), hn::Div(sin, distance), zero);
+        dx = hn::Add(hn::Mul(dx, cos), hn::Mul(across(0), scale));
+        dy = hn::Add(hn::Mul(dy, cos), hn::Mul(across(1), scale));
+        dz = hn::Add(hn::Mul(dz, cos), hn::Mul(across(2), scale));
+        Normalize(d, dx, dy, dz);
+        break;
+      }
     }
     hn::StoreU(ox, d, rays.origin_x + i);
     hn::StoreU(oy, d, rays.origin_y + i);

@@ -84,8 +84,8 @@ struct LightData {
   Real cone_scale = 0, cone_offset = 0;
 };
 
-enum class CameraModel : std::uint32_t { kPerspective, kOrthographic };
-inline constexpr CameraModel kLastCameraModel = CameraModel::kOrthographic;
+enum class CameraModel : std::uint32_t { kPerspective, kOrthographic, kEquirectangular, kFisheye };
+inline constexpr CameraModel kLastCameraModel = CameraModel::kFisheye;
 
 // Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
 // and b = half_height - (y + sy) steps up.

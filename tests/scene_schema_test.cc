@@ -170,7 +170,15 @@ json CompleteScene() {
       {"directional": {"direction": [1, -1, 1]}, "intensity": 1}],
     "cameras": [
       {"name": "p", "eye": [0, 0, 9], "look_at": [0, 0, 0], "up": [0, 1, 0.5], "fov_y": 40},
-      {"name": "o", "eye": [0, 0, 9], "look_at": [0, 0, 0], "orthographic": {"height": 3}}],
+      {"name": "o", "eye": [0, 0, 9], "look_at": [0, 0, 0], "orthographic": {"height": 3}},
+      {"name": "n", "eye": [0, 0, 9], "look_at": [0, 0, 0],
+       "projection": {"perspective": {"fov_y": 40}}},
+      {"name": "h", "eye": [0, 0, 9], "look_at": [0, 0, 0],
+       "projection": {"orthographic": {"height": 3}}},
+      {"name": "e", "eye": [0, 0, 9], "look_at": [0, 0, 0],
+       "projection": {"equirectangular": {}}},
+      {"name": "f", "eye": [0, 0, 9], "look_at": [0, 0, 0],
+       "projection": {"fisheye": {"fov": 200}}}],
     "views": {"all": ["p", "o"], "one": ["o"]}})");
 }
 

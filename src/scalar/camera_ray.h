@@ -2,8 +2,11 @@
 #ifndef SHEAF_SCALAR_CAMERA_RAY_H_
 #define SHEAF_SCALAR_CAMERA_RAY_H_
 
+#include <cmath>
+
 #include "simd/shading.h"
 #include "src/scalar/ray.h"
+#include "src/scalar/sin_cos.h"
 
 namespace sheaf::scalar {
 
@@ -19,9 +22,20 @@ Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Rea
     case CameraModel::kPerspective:
       return {eye, Normalize(forward + across())};
     case CameraModel::kOrthographic:
+      return {eye + across(), forward};
+    case CameraModel::kEquirectangular: {
+      const SinCos<Real> longitude = SinCosOf(a * camera.turns_x);
+      const SinCos<Real> latitude = SinCosOf(b * camera.turns_y);
+      const Vec3<Real> level = forward * longitude.cos + FromArray(camera.right) * longitude.sin;
+      return {eye, Normalize(level * latitude.cos + FromArray(camera.up) * latitude.sin)};
+    }
+    case CameraModel::kFisheye:
       break;
   }
-  return {eye + across(), forward};
+  const Real distance = std::sqrt(a * a + b * b);
+  const SinCos<Real> angle = SinCosOf(distance * camera.turns_y);
+  const Real scale = distance > 0 ? angle.sin / distance : Real(0);
+  return {eye, Normalize(forward * angle.cos + across() * scale)};
 }
 
 }  // namespace sheaf::scalar

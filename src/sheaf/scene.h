@@ -151,7 +151,17 @@ struct Orthographic {
   double height = 2.0;  // of the picture in scene units, > 0
 };
 
-using Projection = std::variant<Perspective, Orthographic>;
+// All directions: 360 degrees across the picture's width, 180 down its height. The middle looks at
+// look_at.
+struct Equirectangular {};
+
+// Equidistant: the angle from the view direction grows with the distance from the picture's middle.
+// Pixels further out than the picture's height go on in the same way.
+struct Fisheye {
+  double fov = 180.0;  // full angle across the picture's height in degrees, in (0, 360]
+};
+
+using Projection = std::variant<Perspective, Orthographic, Equirectangular, Fisheye>;
 
 // What the number of a projection is, where it has one.
 enum class ProjectionUnit { kNone, kDegrees, kLength };
@@ -175,6 +185,9 @@ inline constexpr ProjectionKind kProjectionKinds[] = {
      0x1.67fffffffffffp7, "a number in (0, 180)"},
     {"orthographic", "height", ProjectionUnit::kLength, ProjectionSurface::kPlane, 2, 1e30,
      "a number in (0, 1e30]"},
+    {"equirectangular", "", ProjectionUnit::kNone, ProjectionSurface::kSphere, 0, 0, ""},
+    {"fisheye", "fov", ProjectionUnit::kDegrees, ProjectionSurface::kSphere, 180, 360,
+     "a number in (0, 360]"},
 };
 static_assert(std::size(kProjectionKinds) == std::variant_size_v<Projection>);
 
