@@ -202,8 +202,8 @@ TEST_CASE("the tree keeps to the direction of includes, to its guards and to pla
     std::set<std::string> seen;
     return ReachesHighway(texts, path, seen);
   };
-  for (const char* plain : {"simd/streams.h", "simd/query.h", "simd/primitives.h", "simd/tree.h", "simd/shading.h",
-                            "simd/pow_terms.h", "simd/roundoffs.h"}) {
+  for (const char* plain : {"simd/streams.h", "simd/query.h", "simd/primitives.h", "simd/tree.h",
+                            "simd/shading.h", "simd/pow_terms.h", "simd/roundoffs.h"}) {
     REQUIRE(texts.count(plain));
     CHECK_FALSE(reaches(plain));
   }

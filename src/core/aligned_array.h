@@ -22,9 +22,7 @@ class AlignedArray {
   AlignedArray() = default;
 
   // Drops what it held. Throws std::bad_alloc where memory runs out.
-  void Allocate(std::size_t size) {
-    AllocateForOverwrite(size, size);
-  }
+  void Allocate(std::size_t size) { AllocateForOverwrite(size, size); }
   // The same, but only the last `padding` elements start as zeros: the others are written before
   // they are read.
   void AllocateForOverwrite(std::size_t size, std::size_t padding) {

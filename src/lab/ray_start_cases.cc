@@ -12,8 +12,8 @@
 #include "src/lab/probe.h"
 #include "src/lab/ray_cases.h"
 #include "src/lab/stress_cases.h"
-#include "src/scalar/shadow_ray.h"
 #include "src/scalar/primitives.h"
+#include "src/scalar/shadow_ray.h"
 
 namespace sheaf::stress {
 namespace {

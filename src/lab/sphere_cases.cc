@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "simd/query.h"
 #include "sheaf/geometry.h"
+#include "simd/query.h"
 #include "src/lab/probe.h"
 #include "src/lab/ray_cases.h"
 #include "src/lab/stress_cases.h"

@@ -81,8 +81,8 @@ Vec3<Wide<Real>> DiskNormal(const DiskArrays<Real>& disks, std::uint32_t i) {
 
 // The hit of one disk in [t_min, t_max]; the source disk is never hit.
 template <typename Real>
-std::optional<DiskHit<Real>> HitDisk(const Ray<Real>& ray,
-                                                  const DiskArrays<Real>& disks, std::uint32_t i) {
+std::optional<DiskHit<Real>> HitDisk(const Ray<Real>& ray, const DiskArrays<Real>& disks,
+                                     std::uint32_t i) {
   using W = Wide<Real>;
   if ((ray.source & ~kInsideBit) == disks.id[i]) return std::nullopt;
   const Vec3<W> o = ray.origin.template To<W>(), d = ray.direction.template To<W>();

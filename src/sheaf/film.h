@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "sheaf/version.h"
+
 namespace sheaf {
 
 // An allocator that leaves new elements as they are: whoever makes a film writes every pixel of it,
@@ -47,7 +49,7 @@ enum class Layer {
 };
 inline constexpr int kLayerCount = static_cast<int>(Layer::kCount);
 inline constexpr int kLayerChannels[kLayerCount] = {1, 3, 3, 1, 3};
-const char* LayerName(Layer layer);  // "depth", "normal", "albedo", "id" or "heat"
+SHEAF_API const char* LayerName(Layer layer);  // "depth", "normal", "albedo", "id" or "heat"
 
 // A set of layers.
 class Layers {

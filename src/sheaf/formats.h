@@ -17,6 +17,7 @@
 #include "sheaf/error.h"
 #include "sheaf/film.h"
 #include "sheaf/scene.h"
+#include "sheaf/version.h"
 
 namespace sheaf {
 
@@ -42,10 +43,10 @@ struct FileFormat {
 };
 
 // All formats, in the order in which messages name them. Lives as long as the process.
-const std::vector<FileFormat>& FileFormats();
+SHEAF_API const std::vector<FileFormat>& FileFormats();
 
 // The format that the ending of `path` names; null for an unknown one.
-const FileFormat* FormatOf(std::string_view path);
+SHEAF_API const FileFormat* FormatOf(std::string_view path);
 
 // ---- Scenes ----
 
@@ -73,11 +74,12 @@ struct ReadSceneResult {
 // a light gets a key light, white ambient light and a bright background. A file of unknown ending
 // is read as scene JSON. kInputOutput where a file cannot be read, kScene where one is malformed,
 // with a message like `file:line: /json/path: what; did you mean "..."?`.
-Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options = {});
+SHEAF_API Result<ReadSceneResult> ReadScene(const std::string& path,
+                                            const ReadOptions& options = {});
 
 // Reads scene JSON from memory. `name` stands for the file in messages, and what the scene names
 // lies relative to it. kScene where the text is malformed.
-Result<Scene> ParseSceneJson(std::string_view text, const std::string& name);
+SHEAF_API Result<Scene> ParseSceneJson(std::string_view text, const std::string& name);
 
 // ---- Pictures ----
 
@@ -106,19 +108,19 @@ struct PictureSpec {
 };
 
 // The spec of a whole picture of these sides, with the rest as it is by default.
-PictureSpec WholePicture(int width, int height, Transfer transfer);
+SHEAF_API PictureSpec WholePicture(int width, int height, Transfer transfer);
 
 // Whether `path` names a format of pictures. kUsage otherwise, with a list of the endings.
-Status CheckPicturePath(const std::string& path);
+SHEAF_API Status CheckPicturePath(const std::string& path);
 
 // Whether a picture of this path can have so many bits a channel. kUsage otherwise.
-Status CheckPictureBits(const std::string& path, int bits);
+SHEAF_API Status CheckPictureBits(const std::string& path, int bits);
 
 // Writes the whole film. The file appears complete or not at all, and one that was there stays
 // until then. kUsage where the path or the spec does not fit a format, kInputOutput where the file
 // cannot be written.
-Status WritePicture(const Film& film, Transfer transfer, const std::string& path);
-Status WritePicture(const Film& film, const PictureSpec& spec, const std::string& path);
+SHEAF_API Status WritePicture(const Film& film, Transfer transfer, const std::string& path);
+SHEAF_API Status WritePicture(const Film& film, const PictureSpec& spec, const std::string& path);
 
 class PictureEncoder;
 
@@ -126,19 +128,19 @@ class PictureEncoder;
 // of them where a .pfm or .exr goes into a pipe. One thread at a time calls it.
 class PictureWriter {
  public:
-  static Result<PictureWriter> Create(const std::string& path, const PictureSpec& spec);
-  static Result<PictureWriter> Create(const std::string& path, int width, int height,
-                                      Transfer transfer);
-  PictureWriter(PictureWriter&&) noexcept;
-  PictureWriter& operator=(PictureWriter&&) noexcept;
+  SHEAF_API static Result<PictureWriter> Create(const std::string& path, const PictureSpec& spec);
+  SHEAF_API static Result<PictureWriter> Create(const std::string& path, int width, int height,
+                                                Transfer transfer);
+  SHEAF_API PictureWriter(PictureWriter&&) noexcept;
+  SHEAF_API PictureWriter& operator=(PictureWriter&&) noexcept;
   // Without a Finish() the file does not appear.
-  ~PictureWriter();
+  SHEAF_API ~PictureWriter();
 
   // The next rows from the top, as wide as the window, with the layers of the spec. After an error
   // the only call left is the destructor.
-  Status WriteRows(const Film& rows);
+  SHEAF_API Status WriteRows(const Film& rows);
   // Once, after all rows.
-  Status Finish();
+  SHEAF_API Status Finish();
 
  private:
   explicit PictureWriter(std::unique_ptr<PictureEncoder> encoder);
@@ -159,7 +161,7 @@ struct ReadPictureResult {
 
 // Reads a .png (values of 0 to 1, as they lie in the file), a .pfm or an .exr, with the layers that
 // it has. kUsage for another ending, kInputOutput for whatever is no such picture.
-Result<ReadPictureResult> ReadPicture(const std::string& path);
+SHEAF_API Result<ReadPictureResult> ReadPicture(const std::string& path);
 
 }  // namespace sheaf
 

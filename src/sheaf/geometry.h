@@ -21,6 +21,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/target.h"
+#include "sheaf/version.h"
 
 namespace sheaf {
 
@@ -32,8 +33,8 @@ class GeometryInput {
   // A mesh. `vertices`: x, y, z of each, any finite number; `indices`: three vertices a triangle,
   // each below the number of vertices. A triangle without area is never hit. Returns the object's
   // id.
-  std::uint32_t AddTriangles(std::span<const float> vertices,
-                             std::span<const std::uint32_t> indices);
+  SHEAF_API std::uint32_t AddTriangles(std::span<const float> vertices,
+                                       std::span<const std::uint32_t> indices);
   // `spheres`: center x, y, z and radius of each, finite, the radius >= 0. A sphere of radius 0 is
   // never hit. Returns the object's id.
   std::uint32_t AddSpheres(std::span<const float> spheres) { return Add(1, spheres); }
@@ -44,7 +45,7 @@ class GeometryInput {
  private:
   friend struct GeometryAccess;
   // Primitives of a kind, by the library's own number for it.
-  std::uint32_t Add(std::uint32_t kind, std::span<const float> fields);
+  SHEAF_API std::uint32_t Add(std::uint32_t kind, std::span<const float> fields);
 
   struct Object {
     std::uint32_t kind;
@@ -73,29 +74,29 @@ class Geometry {
   static constexpr std::uint32_t kInsideBit = 0x80000000u;
 
   // Without objects: every ray misses it.
-  Geometry();
-  Geometry(Geometry&& other) noexcept;
-  Geometry& operator=(Geometry&& other) noexcept;
-  ~Geometry();
+  SHEAF_API Geometry();
+  SHEAF_API Geometry(Geometry&& other) noexcept;
+  SHEAF_API Geometry& operator=(Geometry&& other) noexcept;
+  SHEAF_API ~Geometry();
 
   // Builds on `threads` threads (0: one a core); the geometry does not depend on how many. Fails
   // with kUsage and the object's and the primitive's number where an index is out of range, a
   // coordinate is not finite, a radius is negative or a count does not divide, and with kUsage
   // where there are more than 2^26 primitives of a kind.
-  static Result<Geometry> Build(const GeometryInput& input, int threads = 0);
+  SHEAF_API static Result<Geometry> Build(const GeometryInput& input, int threads = 0);
 
   // The smallest box around the primitives, up to a millionth of its size; lower > upper where
   // there are none. x, y, z.
-  std::array<float, 3> lower() const;
-  std::array<float, 3> upper() const;
+  SHEAF_API std::array<float, 3> lower() const;
+  SHEAF_API std::array<float, 3> upper() const;
   // Walks the whole tree.
-  GeometryStatistics statistics() const;
+  SHEAF_API GeometryStatistics statistics() const;
 
-  std::uint32_t object_count() const;
+  SHEAF_API std::uint32_t object_count() const;
   // The object that a primitive belongs to. `primitive` is below the number of all given.
-  std::uint32_t object_of(std::uint32_t primitive) const;
+  SHEAF_API std::uint32_t object_of(std::uint32_t primitive) const;
   // The first primitive of an object, or for object_count() the number of all primitives given.
-  std::uint32_t first_primitive(std::uint32_t object) const;
+  SHEAF_API std::uint32_t first_primitive(std::uint32_t object) const;
 
  private:
   friend struct GeometryAccess;
@@ -160,13 +161,13 @@ struct HitArrays {
 // The nearest hit of each of `count` rays; of equal t the lowest primitive. Rays with a component
 // that is not finite, with no direction or with t_min > t_max miss. Safe to call from any number of
 // threads at once.
-void TraceClosest(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
-                  const HitArrays& hits, const TraceOptions& options = {});
+SHEAF_API void TraceClosest(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
+                            const HitArrays& hits, const TraceOptions& options = {});
 
 // Writes to occluded[0, count): 1 where a ray hits anything within its interval, else 0. Rays and
 // threads as with TraceClosest.
-void TraceOccluded(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
-                   std::uint32_t* occluded, const TraceOptions& options = {});
+SHEAF_API void TraceOccluded(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
+                             std::uint32_t* occluded, const TraceOptions& options = {});
 
 }  // namespace sheaf
 

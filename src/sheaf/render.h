@@ -16,6 +16,7 @@
 #include "sheaf/scene.h"
 #include "sheaf/stats.h"
 #include "sheaf/target.h"
+#include "sheaf/version.h"
 
 namespace sheaf {
 
@@ -31,7 +32,7 @@ inline constexpr Precision kPrecisions[] = {Precision::kStrict, Precision::kFast
                                             Precision::kDouble};
 
 // "strict", "fast" or "double".
-const char* PrecisionName(Precision precision);
+SHEAF_API const char* PrecisionName(Precision precision);
 
 // Whether RenderStats::phase_seconds is filled. It costs a look at the clock a phase and batch.
 enum class Timing { kOff, kOn };
@@ -94,8 +95,9 @@ struct RenderProgress {
 // `progress` read and written; both may be null. Fails with kUsage where an option is out of range,
 // with kScene where the scene has too many primitives, with kInterrupted where progress->stop was
 // set. Blocks until the frame is done or has failed.
-Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options = {},
-                    RenderStats* stats = nullptr, RenderProgress* progress = nullptr);
+SHEAF_API Result<Film> Render(const Scene& scene, const Camera& camera,
+                              const RenderOptions& options = {}, RenderStats* stats = nullptr,
+                              RenderProgress* progress = nullptr);
 
 // Takes the next finished rows from the top, as wide as the picture or crop; `rows` lives as long
 // as the call. Calls come in order, one at a time, from any thread.
@@ -104,9 +106,9 @@ using RowSink = std::function<Status(const Film& rows)>;
 // Renders as Render does, the same bits and errors, in bands of rows that leave memory as they are
 // finished: it holds two bands of about 2 MiB, or a row of tiles; while one renders the sink has
 // the other. A sink that fails ends the frame: its error is returned, and progress->stop is set.
-Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
-                  const RowSink& sink, RenderStats* stats = nullptr,
-                  RenderProgress* progress = nullptr);
+SHEAF_API Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                            const RowSink& sink, RenderStats* stats = nullptr,
+                            RenderProgress* progress = nullptr);
 
 }  // namespace sheaf
 

@@ -5,6 +5,7 @@
 #include "sheaf/error.h"
 #include "sheaf/film.h"
 #include "sheaf/formats.h"
+#include "sheaf/geometry.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "sheaf/stats.h"

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "sheaf/version.h"
+
 namespace sheaf {
 
 // Rays by what they are for.
@@ -39,7 +41,7 @@ enum class Phase {
 };
 
 // Lower case: "generate", "trace", "bin", "surface", "shade", "shadow", "spawn", "accumulate".
-const char* PhaseName(Phase phase);
+SHEAF_API const char* PhaseName(Phase phase);
 
 // How full the vectors of a phase's kernels were: of `lanes` that ran, `live` had something to do.
 struct LaneUse {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sheaf/version.h"
+
 namespace sheaf {
 
 // Chosen for each frame or batch of rays; in strict arithmetic the choice changes no bit of a
@@ -23,15 +25,15 @@ class Target {
 
   // "auto" (the best), "scalar" (the baseline), or a name of UsableTargets(). Nothing for a name
   // that is unknown or of a target that this processor does not run.
-  static std::optional<Target> Named(std::string_view name);
+  SHEAF_API static std::optional<Target> Named(std::string_view name);
 
   constexpr bool is_scalar() const { return id_ == kScalarId; }
 
   // Like "avx2"; of the best, the name it has on this processor; "scalar" of the baseline.
-  std::string name() const;
+  SHEAF_API std::string name() const;
 
   // Floats a vector, at least 1; 1 of the baseline.
-  int lanes() const;
+  SHEAF_API int lanes() const;
 
   // Of the library's own use: 0 of the best, else a bit.
   constexpr std::int64_t id() const { return id_; }
@@ -49,10 +51,10 @@ class Target {
 // Names of the SIMD targets that the library was compiled for, best first; the baseline is not
 // among them. The names are ssse3, sse4, avx2, avx3 (AVX-512), avx3_dl, neon, sve and so on, and
 // hwy_scalar for kernels of one lane.
-std::vector<std::string> CompiledTargets();
+SHEAF_API std::vector<std::string> CompiledTargets();
 
 // Those of them that this processor runs, best first; never empty.
-std::vector<std::string> UsableTargets();
+SHEAF_API std::vector<std::string> UsableTargets();
 
 }  // namespace sheaf
 

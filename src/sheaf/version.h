@@ -1,4 +1,4 @@
-// The version of these headers.
+// The version of these headers, and the mark of what the library exports.
 #ifndef SHEAF_SHEAF_VERSION_H_
 #define SHEAF_SHEAF_VERSION_H_
 
@@ -13,13 +13,21 @@
   SHEAF_STRINGIFY(SHEAF_VERSION_MAJOR) \
   "." SHEAF_STRINGIFY(SHEAF_VERSION_MINOR) "." SHEAF_STRINGIFY(SHEAF_VERSION_PATCH)
 
+// Stands before each function that a program may call. A shared library hides everything else; what
+// links the static one re-exports nothing.
+#if defined(SHEAF_SHARED) && defined(__GNUC__)
+#define SHEAF_API __attribute__((visibility("default")))
+#else
+#define SHEAF_API
+#endif
+
 namespace sheaf {
 
 inline constexpr char kVersion[] = SHEAF_VERSION_STRING;
 
 // The version of the library that runs, like "0.2.0": another than kVersion where a shared library
 // was exchanged. Lives as long as the process.
-const char* LibraryVersion();
+SHEAF_API const char* LibraryVersion();
 
 }  // namespace sheaf
 

@@ -1,0 +1,3 @@
+#include "render_ball.h"
+
+int main() { return RenderBall(); }
