@@ -53,7 +53,7 @@ readelf -d "$library" | grep -q 'SONAME.*libsheaf\.so\.0\.2' || fail "libsheaf.s
 names_in() { nm "$@" -C --defined-only 2>/dev/null | sed -nE 's/.* T (sheaf::[A-Za-z:]*[~=A-Za-z]+)\(.*/\1/p' | sort -u; }
 names_in -D "$library" >"$work/names"
 ! grep -E '^sheaf::(simd|scalar)::' "$work/names" || fail "libsheaf.so exports what is inside"
-headers=$(sed 's|//.*||' "$shared"/include/sheaf/*.h)
+headers=$(sed 's|//.*||' "$shared"/include/sheaf/*.h | awk '/^ private:/ { skip = 1 } /^};/ { skip = 0 } !skip')
 count=0
 while read -r name; do
   name=${name#sheaf::} owner=
@@ -61,7 +61,7 @@ while read -r name; do
   if [[ -z $owner ]]; then
     grep -qE "^[A-Za-z].*\b$name\(" <<<"$headers" || continue
   else
-    grep -qE "^class $owner |^struct $owner " <<<"$headers" || continue
+    grep -qE "^class $owner |^struct $owner " <<<"$headers" && grep -qF " $name(" <<<"$headers" || continue
   fi
   grep -qxF "sheaf::$owner${owner:+::}$name" "$work/names" || fail "libsheaf.so lacks ${owner:+$owner::}$name: SHEAF_API is missing"
   count=$((count + 1))

@@ -1,6 +1,6 @@
 // What every consumer does with Sheaf: renders a ball that shines, by the public headers alone.
-#ifndef CONSUMER_RENDER_BALL_H_
-#define CONSUMER_RENDER_BALL_H_
+#ifndef SHEAF_TESTS_CONSUMERS_RENDER_BALL_H_
+#define SHEAF_TESTS_CONSUMERS_RENDER_BALL_H_
 
 #include <sheaf/sheaf.h>
 
@@ -29,4 +29,4 @@ inline int RenderBall() {
   return is_right ? 0 : 1;
 }
 
-#endif  // CONSUMER_RENDER_BALL_H_
+#endif  // SHEAF_TESTS_CONSUMERS_RENDER_BALL_H_
