@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,25 +51,35 @@ TEST_CASE("without arguments the help goes to stderr, and the code is 2") {
   CHECK(Contains(nothing.err, "Usage:"));
 }
 
-TEST_CASE("usage errors: one line on stderr, code 2, no file") {
+struct Mistake {
+  std::vector<std::string> arguments;
+  std::string says;
+};
+
+// One line on stderr, code 2, no file.
+void CheckUsageErrors(const Workspace& work, std::span<const Mistake> mistakes) {
+  for (const Mistake& wrong : mistakes) {
+    const Outcome outcome = work.Run(wrong.arguments);
+    CAPTURE(wrong.arguments.back());
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err.starts_with("sheaf: "));
+    CHECK(LineCount(outcome.err) == 1);
+    CHECK(Contains(outcome.err, wrong.says));
+  }
+  CHECK(work.Files().empty());
+}
+
+TEST_CASE("usage errors of render") {
   const Workspace work;
   const std::string png = work / "a.png";
-  const struct {
-    std::vector<std::string> arguments;
-    std::string says;
-  } cases[] = {
-      {{"rendr"}, "did you mean \"render\"?"},
-      {{"help"}, "did you mean \"--help\"?"},
-      {{"version"}, "did you mean \"--version\"?"},
+  const Mistake cases[] = {
       {{"render", "--", kScene, "-o", png}, "unknown option \"-o\""},
-      {{"convert", kScene, "-o", work / "a.json", "--bits", "16"}, "--bits: for pictures"},
-      {{"convert", kScene, "-o", work / "a.json", "--transfer", "keep"}, "--transfer: for pict"},
-      {{"convert", work / "b.pfm", "-o", png, "--eye", "1,2,3"}, "--eye: for scenes"},
       {{"render", kScene, "-o", png, "--camera", "up", "--eye", "0,0,9"},
        "\"front\", which is not"},
       {{"render", kScene, "-o", work / "{camera}.png", "--views", "sides", "--fov", "9"},
        "--fov: m"},
-      {{"compare", kScene, "--camera", "up", "--look-at", "0,0,9"}, "--look-at: moves"},
       {{"render"}, "SCENE"},
       {{"render", kScene}, "--output"},
       {{"render", kScene, "-o", png, "--siez", "3x3"}, "did you mean \"--size\"?"},
@@ -105,9 +116,24 @@ TEST_CASE("usage errors: one line on stderr, code 2, no file") {
       {{"render", kScene, "-o", png, "--views", "seven"}, "{camera}"},
       {{"render", kScene, "-o", work / "{camera}.png", "--views", "seven", "--camera", "up"},
        "--views"},
-      {{"info", kScene, "extra"}, "extra"},
       {{"render", kScene, "-o", ""}, "--output: the path is empty"},
       {{"render", kScene, "-o", png, "--json="}, "--json=: nothing follows"},
+  };
+  CheckUsageErrors(work, cases);
+}
+
+TEST_CASE("usage errors of the other commands") {
+  const Workspace work;
+  const std::string png = work / "a.png";
+  const Mistake cases[] = {
+      {{"rendr"}, "did you mean \"render\"?"},
+      {{"help"}, "did you mean \"--help\"?"},
+      {{"version"}, "did you mean \"--version\"?"},
+      {{"convert", kScene, "-o", work / "a.json", "--bits", "16"}, "--bits: for pictures"},
+      {{"convert", kScene, "-o", work / "a.json", "--transfer", "keep"}, "--transfer: for pict"},
+      {{"convert", work / "b.pfm", "-o", png, "--eye", "1,2,3"}, "--eye: for scenes"},
+      {{"compare", kScene, "--camera", "up", "--look-at", "0,0,9"}, "--look-at: moves"},
+      {{"info", kScene, "extra"}, "extra"},
       {{"bench", kScene, "--baseline", ""}, "--baseline: the path is empty"},
       {{"bench", kScene, "--json="}, "--json=: nothing follows"},
       {{"bench", kScene, "--targets", "foo"},
@@ -124,17 +150,7 @@ TEST_CASE("usage errors: one line on stderr, code 2, no file") {
       {{"stress", "on-sphere", "--replay", "1,2,3"}, "ox,oy,oz"},
       {{"stress", "clear-glass", "--replay", "0,0,3,0,0,-1,0,1,0"}, "traces no single rays"},
   };
-  for (const auto& wrong : cases) {
-    const Outcome outcome = work.Run(wrong.arguments);
-    CAPTURE(wrong.arguments.back());
-    CAPTURE(outcome.err);
-    CHECK(outcome.code == 2);
-    CHECK(outcome.out.empty());
-    CHECK(outcome.err.starts_with("sheaf: "));
-    CHECK(LineCount(outcome.err) == 1);
-    CHECK(Contains(outcome.err, wrong.says));
-  }
-  CHECK(work.Files().empty());
+  CheckUsageErrors(work, cases);
 }
 
 TEST_CASE("an unknown target lists every usable one") {

@@ -124,7 +124,7 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   REQUIRE(first.code == 0);
   CHECK(Contains(first.out, "range of all"));
   CHECK(!Contains(first.out, "95 % interval"));
-  json report = json::parse(ReadText(before));
+  const json report = json::parse(ReadText(before));
   REQUIRE(report["rows"].size() >= 3);
   CHECK(report["rows"][0]["target"] == "scalar");
   for (const json& row : report["rows"]) {
@@ -166,9 +166,17 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   CHECK(Contains(work.Run(few).out, "too few repetitions"));
   few[5] = "6";
   CHECK(Contains(work.Run(few).out, "95 % interval"));
+}
 
-  // Another frame, as far as the file tells.
-  few[5] = "1";
+TEST_CASE("bench refuses an earlier run of another frame and replaces nothing that it reads") {
+  const Workspace work;
+  const std::string before = work / "before.json";
+  std::vector<std::string> few = {"bench", kScene, "--size", "64x48", "--repetitions", "1"};
+  auto first = few;
+  first.push_back("--json=" + before);
+  REQUIRE(work.Run(first).code == 0);
+  const json report = json::parse(ReadText(before));
+  few.insert(few.end(), {"--targets", "auto", "--baseline", before});
   const auto refuse = [&](const json& changed, const char* says) {
     WriteText(before, changed.dump());
     const Outcome outcome = work.Run(few);
@@ -195,7 +203,6 @@ TEST_CASE("bench measures every target and judges against an earlier run") {
   few.pop_back();
 
   WriteText(before, "{}");
-  few[5] = "1";
   CHECK(work.Run(few).code == 4);
   CHECK(work.Run({"bench", kScene, "--baseline", work / "none"}).code == 4);
   CHECK(work.Run({"bench", kScene, "--targets", "avx9"}).code == 2);

@@ -13,6 +13,53 @@
 namespace sheaf::scene_text {
 namespace {
 
+void CheckCrystalBallLights(const Scene& scene) {
+  struct ExpectedLight {
+    Vec3d position;
+    Colour colour;
+    double e0, distance;
+    int power;
+  };
+  const ExpectedLight expected[] = {{Vec3d(-30, 100, 30), Colour(1, 1, .9), 1.2e5, 114.848, 2},
+                                    {Vec3d(40, 60, -15), Colour(.6, .7, 1), 3.6e4, 74.733, 1},
+                                    {Vec3d(0, 50, -30), Colour(.3, .3, .4), 1.1e4, 56.303, 0}};
+  REQUIRE(scene.lights.size() == 3);
+  for (int i = 0; i < 3; ++i) {
+    const auto& light = scene.lights[i];
+    const auto& point = std::get<PointLight>(light.source);
+    const Vec3d d = Vec3d(0, -3, -11) - expected[i].position;
+    const double square = d.x * d.x + d.y * d.y + d.z * d.z;
+    CHECK(std::abs(std::sqrt(square) - expected[i].distance) < 5e-4);
+    const double factor[] = {1.0, std::sqrt(square), square};
+    CHECK(light.intensity == expected[i].e0 * factor[expected[i].power]);
+    CHECK(point.position == expected[i].position);
+    CHECK(point.falloff.constant == (expected[i].power == 0 ? 1.0 : 0.0));
+    CHECK(point.falloff.linear == (expected[i].power == 1 ? 1.0 : 0.0));
+    CHECK(point.falloff.quadratic == (expected[i].power == 2 ? 1.0 : 0.0));
+    CHECK(light.colour == expected[i].colour);
+    CHECK(light.casts_shadows);
+  }
+}
+
+void CheckCrystalBallCameras(const Scene& scene) {
+  const std::pair<const char*, Vec3d> eyes[] = {
+      {"front", {0, 0, 0}},  {"up", {0, 5, 0}},    {"down", {0, -2, 0}}, {"left", {-6, 0, -1}},
+      {"right", {6, 0, -1}}, {"near", {0, 0, -3}}, {"far", {0, 0, 6}}};
+  REQUIRE(scene.cameras.size() == 7);
+  for (int i = 0; i < 7; ++i) {
+    CHECK(scene.cameras[i].name == eyes[i].first);
+    CHECK(scene.cameras[i].eye == eyes[i].second);
+    CHECK(scene.cameras[i].look_at == Vec3d(-.25, -1, -10));
+    CHECK(scene.cameras[i].up == Vec3d(0, 1, 0));
+    CHECK(std::get<Perspective>(scene.cameras[i].projection).fov_y == 60.0);
+  }
+  REQUIRE(scene.views.size() == 4);
+  CHECK(scene.views[0].name == "seven");
+  CHECK(scene.views[0].cameras == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6});
+  CHECK(scene.views[1].name == "sides");
+  CHECK(scene.views[1].cameras == std::vector<std::uint32_t>{3, 4});
+}
+
 TEST_CASE("the crystal ball holds exactly the numbers of its definition") {
   const Result<Scene> read = ReadSceneJson(kScenes + "crystal-ball.json");
   if (!read.ok()) FAIL(read.error().message);
@@ -59,49 +106,8 @@ TEST_CASE("the crystal ball holds exactly the numbers of its definition") {
   CHECK(std::get<struct Quad>(scene.objects[2].shape).corners ==
         std::array{Vec3d(-5, -3, -6), Vec3d(5, -3, -6), Vec3d(5, -3, -16), Vec3d(-5, -3, -16)});
   for (std::uint32_t i = 0; i < 3; ++i) CHECK(scene.objects[i].material == i);
-
-  struct ExpectedLight {
-    Vec3d position;
-    Colour colour;
-    double e0, distance;
-    int power;
-  };
-  const ExpectedLight expected[] = {{Vec3d(-30, 100, 30), Colour(1, 1, .9), 1.2e5, 114.848, 2},
-                                    {Vec3d(40, 60, -15), Colour(.6, .7, 1), 3.6e4, 74.733, 1},
-                                    {Vec3d(0, 50, -30), Colour(.3, .3, .4), 1.1e4, 56.303, 0}};
-  REQUIRE(scene.lights.size() == 3);
-  for (int i = 0; i < 3; ++i) {
-    const auto& light = scene.lights[i];
-    const auto& point = std::get<PointLight>(light.source);
-    const Vec3d d = Vec3d(0, -3, -11) - expected[i].position;
-    const double square = d.x * d.x + d.y * d.y + d.z * d.z;
-    CHECK(std::abs(std::sqrt(square) - expected[i].distance) < 5e-4);
-    const double factor[] = {1.0, std::sqrt(square), square};
-    CHECK(light.intensity == expected[i].e0 * factor[expected[i].power]);
-    CHECK(point.position == expected[i].position);
-    CHECK(point.falloff.constant == (expected[i].power == 0 ? 1.0 : 0.0));
-    CHECK(point.falloff.linear == (expected[i].power == 1 ? 1.0 : 0.0));
-    CHECK(point.falloff.quadratic == (expected[i].power == 2 ? 1.0 : 0.0));
-    CHECK(light.colour == expected[i].colour);
-    CHECK(light.casts_shadows);
-  }
-
-  const std::pair<const char*, Vec3d> eyes[] = {
-      {"front", {0, 0, 0}},  {"up", {0, 5, 0}},    {"down", {0, -2, 0}}, {"left", {-6, 0, -1}},
-      {"right", {6, 0, -1}}, {"near", {0, 0, -3}}, {"far", {0, 0, 6}}};
-  REQUIRE(scene.cameras.size() == 7);
-  for (int i = 0; i < 7; ++i) {
-    CHECK(scene.cameras[i].name == eyes[i].first);
-    CHECK(scene.cameras[i].eye == eyes[i].second);
-    CHECK(scene.cameras[i].look_at == Vec3d(-.25, -1, -10));
-    CHECK(scene.cameras[i].up == Vec3d(0, 1, 0));
-    CHECK(std::get<Perspective>(scene.cameras[i].projection).fov_y == 60.0);
-  }
-  REQUIRE(scene.views.size() == 4);
-  CHECK(scene.views[0].name == "seven");
-  CHECK(scene.views[0].cameras == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6});
-  CHECK(scene.views[1].name == "sides");
-  CHECK(scene.views[1].cameras == std::vector<std::uint32_t>{3, 4});
+  CheckCrystalBallLights(scene);
+  CheckCrystalBallCameras(scene);
 }
 
 TEST_CASE("the smallest scene has the defaults of scene.h") {
