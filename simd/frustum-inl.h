@@ -1,9 +1,9 @@
 // A frustum: as many packets as the target has lanes, with one origin, through the tree together.
 //
-// A lane of the beam is a packet, so that one test decides for all its rays. Distances along the
-// rays are measured along their dominant axis, where they mean the same for all, however long the
-// directions are. Rays stay where they are, in the batch's arrays: a frustum adds what its tests
-// need and nothing else, and hits go straight to the batch's output.
+// A lane of the beam is a packet, so that one test decides for all its rays. Distances are measured
+// along the dominant axis that all rays share. There they are comparable, whatever the lengths of
+// the directions. Rays stay in the batch's arrays: a frustum adds only what its tests need, and
+// hits go straight to the batch's output.
 #if defined(SHEAF_SIMD_FRUSTUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_FRUSTUM_INL_H_
 #undef SHEAF_SIMD_FRUSTUM_INL_H_
@@ -21,21 +21,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// Primitives a leaf, about.
+// Average number of primitives in a leaf, roughly.
 inline constexpr int kLeafFill = 5;
-// Leaves that a packet may see for its frustum to stay one. Occlusion ends at any hit, and sees few
-// of them.
+// A frustum whose packets see more leaves than this goes as packets. Occlusion ends at any hit, so
+// that it really meets few of them.
 template <Query kQuery>
 inline constexpr int kMostLeaves = kQuery == Query::kOccluded ? 32 : 8;
 
-// Rounding of slopes, products and sums below, generously: a part of the largest number in play.
+// Bounds the rounding errors of slopes, products and sums below, relative to the largest operand.
 template <typename Real>
 inline constexpr Real kFrustumSlack = 16 * std::numeric_limits<Real>::epsilon();
 
 template <typename Real>
 struct alignas(kAlignment) Frustum {
   static constexpr std::uint32_t kSize = kPacketSize<Real>;
-  // By packet and ray. screen: where there is anything but triangles.
+  // By packet and ray. `screen` is set where there is anything but triangles.
   Real shear_x[kSize][kSize], shear_y[kSize][kSize], t_best[kSize][kSize];
   Real screen[kSize][kSize];
   Beam<Real> beam;  // t is the distance along the dominant axis
@@ -97,7 +97,7 @@ struct FrustumRays {
   }
 };
 
-// The furthest that an open ray of packet k still goes, along the dominant axis.
+// The largest distance, along the dominant axis, at which an open ray of packet k may still hit.
 template <class Output, typename Real>
 HWY_INLINE Real LastDepth(const Batch<Output, Real>& batch, const Frustum<Real>& frustum,
                           std::uint32_t k) {
@@ -111,9 +111,9 @@ HWY_INLINE Real LastDepth(const Batch<Output, Real>& batch, const Frustum<Real>&
   return std::min(hn::GetLane(hn::MaxOfLanes(d, end)), kDefaultTMax<Real>);
 }
 
-// Whether packets see so many leaves at once that their rays fare better apart: the part of the
-// tree's view that a packet covers on average, times the leaves, as if these lay side by side.
-// (low_x, high_x) and (low_y, high_y) are ranges of shears by packet. A choice, not a bound.
+// Whether a packet sees so many leaves that packets are faster than the frustum. Estimated as the
+// fraction of the tree's view that a packet covers on average, times the number of leaves.
+// (low_x, high_x) and (low_y, high_y) are ranges of shears by packet. No result depends on it.
 template <Query kQuery, typename Real>
 HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Frustum<Real>& frustum,
                          const Real* low_x, const Real* high_x, const Real* low_y,
@@ -156,8 +156,8 @@ HWY_INLINE std::uint32_t FirstTraceable(const Batch<Output, Real>& batch, std::u
   return end;
 }
 
-// Takes the origin, the octant and the dominant axis of ray `one` for those of all. False where no
-// frustum can have them.
+// Takes the origin, the octant and the dominant axis of ray `one` for the frustum. Returns false
+// where a frustum cannot have them.
 template <class Output, typename Real>
 HWY_INLINE bool ShareRay(const Batch<Output, Real>& batch, std::uint32_t one,
                          Frustum<Real>& frustum, bool (&backward)[3]) {
@@ -179,10 +179,10 @@ HWY_INLINE bool ShareRay(const Batch<Output, Real>& batch, std::uint32_t one,
   return is_within;
 }
 
-// Whether the batch's rays from `begin` on can go as a frustum: one origin, one octant, one
-// dominant axis, none all but parallel to a plane of boxes, all within the limits of box tests; and
-// should, because they are close together. Then the frustum is ready for TraceFrustum, and
-// Finish has to follow.
+// Returns whether the batch's rays from `begin` on can go as a frustum and are close enough
+// together to gain by it. They need one origin, octant and dominant axis, must lie within the
+// limits of box tests, and none may be almost parallel to the planes of boxes. If so, the frustum
+// is ready for TraceFrustum, and Finish has to follow.
 template <Query kQuery, class Output, typename Real>
 HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t begin,
                                Frustum<Real>& frustum) {
@@ -195,8 +195,8 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
   frustum.first = begin;
   frustum.count = (end - begin + lanes - 1) / lanes;
 
-  // By packet, the range of its shears. They have the signs of the octant, so that their magnitudes
-  // say how steep they are.
+  // The range of shears of each packet, as magnitudes. Their signs are those of the octant, which
+  // all rays share.
   alignas(kAlignment) Real low_x[kPacketSize<Real>], high_x[kPacketSize<Real>];
   alignas(kAlignment) Real low_y[kPacketSize<Real>], high_y[kPacketSize<Real>];
   Beam<Real>& beam = frustum.beam;
@@ -237,7 +237,7 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
                from_z = load(batch.origin(frustum.kz));
     alike = hn::And(alike,
                     hn::And(hn::Eq(from_x, ox), hn::And(hn::Eq(from_y, oy), hn::Eq(from_z, oz))));
-    // A ray that is not like the others ends the frustum, unless it hits nothing anyway.
+    // A ray that is not like the others rules the frustum out, unless it can hit nothing anyway.
     const auto in_batch = LanesBelow(d, i, batch.count);
     const auto other = hn::AndNot(alike, in_batch);
     if (HWY_UNLIKELY(!hn::AllFalse(d, other))) {
@@ -286,7 +286,7 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
     const auto to_shear = hn::Mul(sign_of(axis), sign_z);
     hn::Store(hn::Mul(hn::Mul(hn::Add(low, high), half), to_shear), d, middle);
     hn::Store(hn::MulAdd(hn::Sub(high, low), half, slack_of_half), d, half_width);
-    // A box's planes are met at (plane - origin) / slope. Empty packets are never asked.
+    // A ray meets a plane at (plane - origin) / slope. Empty packets are never tested.
     const auto unit = sign_of(axis);
     const auto enter = hn::Mul(hn::Div(unit, high), hn::Set(d, 1 - kFrustumSlack<Real>));
     const auto leave = hn::Mul(hn::Div(unit, low), hn::Set(d, 1 + kFrustumSlack<Real>));

@@ -1,7 +1,7 @@
-// The primitives of a leaf against the packets of a frustum.
+// Tests the primitives of a leaf against the packets of a frustum.
 //
-// A triangle is held to a whole packet before any of its rays: either a packet to all triangles of
-// the leaf, or a triangle to all packets, whichever fills vectors better.
+// Before the rays of a packet meet a triangle, the triangle is culled against the packet as a
+// whole. Lanes are the triangles of the leaf or the packets of the frustum, whichever are more.
 #if defined(SHEAF_SIMD_FRUSTUM_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_FRUSTUM_LEAF_INL_H_
 #undef SHEAF_SIMD_FRUSTUM_LEAF_INL_H_
@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// The vertices of a leaf's triangles, or its spheres' centers, relative to the frustum's origin,
-// and what tests against packets share.
+// The vertices of a leaf's triangles relative to the frustum's origin, and what the tests against
+// all packets share.
 template <typename Real>
 struct alignas(kAlignment) FrustumLeaf {
   Real x[3][kMaxLeafSize], y[3][kMaxLeafSize], z[3][kMaxLeafSize];  // [vertex]
@@ -47,16 +47,16 @@ HWY_INLINE void LoadTriangles(const Frustum<Real>& frustum, const Real* block, s
     }
     hn::Store(depth, d, leaf.depth + i);
     hn::Store(hn::Mul(hn::Add(width, depth), hn::Set(d, kFrustumSlack<Real>)), d, leaf.slack + i);
-    // A hit may lie before the nearest vertex by roundoffs of the furthest (KeepInExtent), or of t
-    // where that is denormal.
+    // Rounding may put a hit before the nearest vertex: by roundoffs of the furthest vertex
+    // (KeepInExtent), or of t where that is denormal.
     const V slack =
         hn::MulAdd(depth, hn::Set(d, kFrustumSlack<Real>), hn::Set(d, Real(kBoxAbsoluteSlack)));
     hn::Store(hn::Sub(nearest, slack), d, leaf.nearest + i);
   }
 }
 
-// One edge of triangles sheared about the middle of a packet: whether the edge function is negative
-// for all its rays, and whether it is positive for all. It is linear in the shear.
+// An edge of triangles that are sheared by the packet's middle. Sets `negative` where the edge
+// function is negative for all rays, `positive` likewise. The function is linear in the shear.
 template <class D, class M, class V = hn::Vec<D>>
 HWY_INLINE void BoundEdge(D d, V px, V py, V pz, V qx, V qy, V qz, V half_x, V half_y, V slack,
                           M& negative, M& positive) {
@@ -81,7 +81,7 @@ HWY_INLINE hn::Mask<D> PacketMisses(D d, V mx, V my, V hx, V hy, V t_last, V ax,
   by = hn::NegMulAdd(my, bz, by);
   cx = hn::NegMulAdd(mx, cz, cx);
   cy = hn::NegMulAdd(my, cz, cy);
-  // The triangle's rectangle, which rays within `half` of the middle reach.
+  // The bounds of the triangle against the rectangle that the packet's rays cover.
   const V reach_x = hn::MulAdd(hx, depth, slack), reach_y = hn::MulAdd(hy, depth, slack);
   const V low_x = hn::Min(hn::Min(ax, bx), cx), high_x = hn::Max(hn::Max(ax, bx), cx);
   const V low_y = hn::Min(hn::Min(ay, by), cy), high_y = hn::Max(hn::Max(ay, by), cy);
@@ -89,7 +89,7 @@ HWY_INLINE hn::Mask<D> PacketMisses(D d, V mx, V my, V hx, V hy, V t_last, V ax,
   out = hn::Or(out, hn::Gt(low_y, reach_y));
   out = hn::Or(out, hn::Lt(hn::Add(high_y, reach_y), hn::Zero(d)));
   out = hn::Or(out, hn::Gt(nearest, t_last));
-  // Not all edges can be on one side.
+  // No ray is inside where one edge function is negative for all rays and another positive.
   auto negative = NoLanes(d), positive = NoLanes(d);
   const V size =
       hn::Max(hn::Max(hn::Abs(low_x), hn::Abs(high_x)), hn::Max(hn::Abs(low_y), hn::Abs(high_y)));
@@ -100,7 +100,7 @@ HWY_INLINE hn::Mask<D> PacketMisses(D d, V mx, V my, V hx, V hy, V t_last, V ax,
   return hn::Or(out, hn::And(negative, positive));
 }
 
-// Triangles that some ray of packet k may hit, as bits.
+// Bits of the triangles that some ray of packet k may hit.
 template <typename Real>
 HWY_INLINE std::uint32_t CullTriangles(const Frustum<Real>& frustum, const FrustumLeaf<Real>& leaf,
                                        std::uint32_t n, std::uint32_t k) {
@@ -120,7 +120,7 @@ HWY_INLINE std::uint32_t CullTriangles(const Frustum<Real>& frustum, const Frust
   return met;
 }
 
-// Packets of which some ray may hit triangle i, as bits; empty ones are among them.
+// Bits of the packets of which some ray may hit triangle i. Empty packets are among them.
 template <typename Real>
 HWY_INLINE std::uint32_t CullPackets(const Frustum<Real>& frustum, const FrustumLeaf<Real>& leaf,
                                      int i) {
@@ -136,7 +136,7 @@ HWY_INLINE std::uint32_t CullPackets(const Frustum<Real>& frustum, const Frustum
                               hn::Set(d, leaf.slack[i]), hn::Set(d, leaf.nearest[i]))));
 }
 
-// Triangle i of the leaf against the rays of packet k. True where some were kept.
+// Tests triangle i of the leaf against the rays of packet k. Returns whether a ray took the hit.
 template <class Output, typename Real>
 HWY_INLINE bool TriangleAgainstFrustum(const Batch<Output, Real>& batch, Frustum<Real>& frustum,
                                        const FrustumLeaf<Real>& leaf, int i, std::uint32_t id,
@@ -154,8 +154,8 @@ HWY_INLINE bool TriangleAgainstFrustum(const Batch<Output, Real>& batch, Frustum
   return bits != 0;
 }
 
-// Packet k has new hits. Its end moves only once every ray has one: until then it is where the
-// furthest ray without one ends, or nearer, and a bound is all that is needed.
+// Updates the end of packet k after new hits. It moves only once every ray has a hit. Until then
+// the furthest ray without one decides, and the old end is a bound that does.
 template <class Output, typename Real>
 HWY_INLINE void UpdateEnd(const Batch<Output, Real>& batch, Frustum<Real>& frustum,
                           std::uint32_t k) {
@@ -196,8 +196,8 @@ HWY_INLINE void TrianglesAgainstFrustum(const Batch<Output, Real>& batch, std::u
   }
 }
 
-// Spheres that some ray of packet k may hit, as bits. Sheared along a ray, a sphere reaches its
-// radius times sqrt(1 + shear^2) to either side.
+// Bits of the spheres that some ray of packet k may hit. A sheared sphere extends by its radius
+// times sqrt(1 + shear^2) to either side.
 template <typename Real>
 HWY_INLINE std::uint32_t CullSpheres(const Frustum<Real>& frustum, const Real* block,
                                      std::uint32_t n, std::uint32_t k) {

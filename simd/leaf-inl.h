@@ -1,7 +1,7 @@
 // The primitives of a leaf against a packet, or against one of its rays.
 //
-// A packet takes the primitives one by one, a ray takes all of the leaf at once: both are pairs of
-// a ray and a primitive in the lanes of a vector.
+// A packet tests one primitive at a time, a single ray all of the leaf's at once. Either way a lane
+// holds a pair of a ray and a primitive.
 #if defined(SHEAF_SIMD_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_LEAF_INL_H_
 #undef SHEAF_SIMD_LEAF_INL_H_

@@ -19,16 +19,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// The most lanes that the target can have; where vectors have no fixed size, more than it has.
+// The most lanes that the target can have. Where vectors have no fixed size it may have fewer.
 template <typename Real>
 inline constexpr std::uint32_t kPacketSize =
     HWY_TARGET == HWY_SCALAR ? 1 : std::min<std::uint32_t>(kMaxLanes, HWY_MAX_BYTES / sizeof(Real));
 
-// The t_best of a lane of which nothing more is wanted: no box and no hit comes before it.
+// t_best of a lane that is finished: no box and no hit comes before it.
 template <typename Real>
 inline constexpr Real kDone = -std::numeric_limits<Real>::infinity();
 
-// Rays in memory, because a ray that goes on alone is read lane by lane. Lanes that cannot hit
+// Rays in memory, because a ray that goes on alone is read from its lane. Lanes that cannot hit
 // anything, or are past the batch's end, are kDone from the start.
 template <typename Real>
 struct alignas(kAlignment) Packet {
@@ -44,11 +44,11 @@ struct alignas(kAlignment) Packet {
   Real screen[kSize];
   // src/scalar/ray_slabs.h, RaySlabs; filled by PrepareBoxes.
   Real scale[3][kSize], enter[3][kSize], leave[3][kSize];
-  Real slack[3][kSize];  // what the origin moves, along the direction, for `enter`
+  Real slack[3][kSize];  // how far the origin moves along the direction for `enter`
 
-  std::uint32_t id[kSize];  // of the nearest hit, or of any where kOccluded is asked
+  std::uint32_t id[kSize];  // of the nearest hit; of any hit for kOccluded
   std::uint32_t source[kSize];
-  std::uint32_t axis[kSize];  // the dominant one, which the shear is along
+  std::uint32_t axis[kSize];  // the dominant axis
   std::uint32_t octant[kSize];
   std::uint32_t without_boxes;  // open lanes that box tests do not hold for
   bool has_boxes;
@@ -131,7 +131,7 @@ HWY_INLINE void GatherPacket(const RayView<Real>& rays, const RayIntervals<Real>
   ForgetHits(packet);
 }
 
-// Lanes of which something is still wanted.
+// Lanes that may still hit something.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Mask<D> OpenMask(D d, const Packet<Real>& packet) {
   return hn::Gt(hn::Load(d, packet.t_best), hn::Set(d, kDone<Real>));
@@ -150,7 +150,7 @@ HWY_INLINE bool HasScreened(const TreeView<Real>& tree) {
   return tree.primitive_count() > tree.of(PrimitiveKind::kTriangle).count;
 }
 
-// What leaf tests read of the rays, and only of the kinds that the tree has.
+// Computes what leaf tests read of the rays, for the kinds of primitives that the tree has.
 template <typename Real>
 HWY_INLINE void PrepareLeafTerms(const TreeView<Real>& tree, Packet<Real>& packet) {
   const Lanes<Real> d;

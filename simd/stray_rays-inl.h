@@ -1,5 +1,5 @@
-// Strays: rays whose neighbours go another way. They are put aside and sorted by direction, so that
-// packets of them share an octant and a dominant axis.
+// Strays: rays whose neighbours go another way. They are set aside and sorted by direction, so that
+// the rays of their packets share an octant and a dominant axis.
 #if defined(SHEAF_SIMD_STRAY_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_STRAY_RAYS_INL_H_
 #undef SHEAF_SIMD_STRAY_RAYS_INL_H_
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// An octant and a dominant axis.
+// Each octant with each dominant axis.
 inline constexpr std::uint32_t kDirectionClasses = 8 * 4;  // one axis in four is none
 
 struct StrayRays {
@@ -26,11 +26,11 @@ struct StrayRays {
   std::uint8_t direction_class[kCapacity];
 };
 
-// What becomes of a vector of rays.
+// What became of a vector of rays.
 enum class Company { kPacket, kStrays };
 
-// Puts the rays [i, i + lanes) of a batch that can hit anything aside, before any packet of them
-// exists, unless all are of one class: then they are as well where they are.
+// Sets the rays [i, i + lanes) of a batch aside that can hit anything, before a packet is made of
+// them. Not if all are of one class: then they make a good packet already.
 template <typename Real>
 HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
                             std::uint32_t i, std::uint32_t count, StrayRays& strays) {
@@ -43,7 +43,7 @@ HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>&
       IsTraceable(d, load(rays.origin_x), load(rays.origin_y), load(rays.origin_z), dx, dy, dz,
                   LoadTMin(d, intervals, i), LoadTMax(d, intervals, i));
   const std::uint32_t open = MaskBits(d, hn::And(traceable, LanesBelow(d, i, count)));
-  // Rays that hit nothing need a packet, which says so.
+  // Rays that can hit nothing need a packet too: it writes that they miss.
   if (open != (1u << LaneCount(d)) - 1) return Company::kPacket;
   alignas(kAlignment) std::uint32_t classes[kPacketSize<Real>];
   const auto of_lane =
@@ -59,7 +59,7 @@ HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>&
   return Company::kStrays;
 }
 
-// Positions by class, in their order within a class.
+// Writes the positions sorted by class; within a class they keep their order.
 inline void SortByDirection(const StrayRays& strays, std::uint32_t* sorted) {
   std::uint32_t next[kDirectionClasses + 1] = {};
   for (std::uint32_t i = 0; i < strays.count; ++i) ++next[strays.direction_class[i] + 1];

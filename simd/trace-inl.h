@@ -1,4 +1,4 @@
-// A batch of rays against a tree: which way its packets go.
+// Traces a batch of rays: as frusta, sheets, packets or single rays.
 #if defined(SHEAF_SIMD_TRACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_INL_H_
 #undef SHEAF_SIMD_TRACE_INL_H_
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// The packet's open rays as rays, or in a packet as far as they go together.
+// Traces the packet's open rays without those of other packets.
 template <Query kQuery, typename Real>
 HWY_INLINE void TraceAlone(const TreeView<Real>& tree, Packet<Real>& packet) {
   PrepareBoxes(tree, packet);
@@ -24,7 +24,7 @@ HWY_INLINE void TraceAlone(const TreeView<Real>& tree, Packet<Real>& packet) {
   TracePacket<kQuery>(tree, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
 }
 
-// Traces the strays.
+// Traces the strays, packet by packet.
 template <class Output, typename Real>
 HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& strays) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
@@ -41,12 +41,12 @@ HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& stray
   strays.count = 0;
 }
 
-// The rays [begin, end) as a sheet, where they can be one.
+// Traces the rays [begin, end) as a sheet and returns true, where they can be one.
 template <class Output, typename Real>
 HWY_NOINLINE bool TraceAsSheet(const Batch<Output, Real>& batch, std::uint32_t begin,
                                std::uint32_t end) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
-  // Most batches are told by two rays.
+  // Two rays rule most batches out.
   const RayView<Real>& rays = batch.rays;
   const std::uint32_t other = std::min(begin + 1, end - 1);
   if (rays.direction_x[begin] != rays.direction_x[other] ||
@@ -71,7 +71,7 @@ HWY_NOINLINE bool TraceAsSheet(const Batch<Output, Real>& batch, std::uint32_t b
   return true;
 }
 
-// The rays [i, i + lanes) as a packet, or every leaf where boxes do not pay.
+// Traces the rays [i, i + lanes) as a packet, or against every leaf where boxes do not pay.
 template <class Output, typename Real>
 HWY_NOINLINE void TraceOnePacket(const Batch<Output, Real>& batch, std::uint32_t i) {
   Packet<Real> packet;
@@ -85,15 +85,15 @@ HWY_NOINLINE void TraceOnePacket(const Batch<Output, Real>& batch, std::uint32_t
   batch.output.Store(packet, i);
 }
 
-// A square of packets at a time: as a frustum, as a sheet, packet by packet, or put aside to be
-// sorted by direction.
+// Takes a square of packets at a time. They go as a frustum, as a sheet or packet by packet, or are
+// set aside as strays to be sorted by direction.
 template <class Output, typename Real>
 HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence) {
   const TreeView<Real>& tree = batch.tree;
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   Frustum<Real> frustum;
   StrayRays strays;
-  // On one lane a frustum is one ray, which gains nothing where boxes do not pay.
+  // On one lane a frustum is a single ray. It gains nothing where boxes do not pay.
   const bool may_be_frustum =
       tree.node_count > 0 && !(tree.skips_boxes && lanes == 1) &&
       (coherence == Coherence::kUnknown || coherence == Coherence::kCommonOrigin);

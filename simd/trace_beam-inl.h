@@ -1,6 +1,6 @@
-// Several lanes through the tree together, where a lane is a ray (a packet) or a group of rays (a
-// frustum): two tests a node, first the whole beam against the eight children, then each child it
-// may meet against the lanes.
+// Traces several lanes through the tree together. A lane is a ray (in a packet) or a packet (in a
+// frustum or sheet). A node takes two tests: first the whole beam against all eight children, then
+// each child that it may meet against the lanes.
 #if defined(SHEAF_SIMD_TRACE_BEAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_BEAM_INL_H_
 #undef SHEAF_SIMD_TRACE_BEAM_INL_H_
@@ -15,10 +15,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// A lane enters a box at the latest of plane * scale + offset over the axes, by the `enter` terms,
-// and leaves it at the earliest, by the `leave` terms. All lanes share the octant. The whole
-// beam: it enters a box no earlier than (plane - all_enter) * all_enter_scale, and likewise
-// leaves it.
+// A lane enters a box at the maximum over the axes of plane * enter_scale + enter, and leaves it at
+// the minimum of plane * leave_scale + leave. All lanes share the octant. The beam as a whole
+// enters no earlier than (plane - all_enter) * all_enter_scale and leaves no later than the same
+// with `all_leave`.
 template <typename Real>
 struct alignas(kAlignment) Beam {
   static constexpr std::uint32_t kSize = kPacketSize<Real>;
@@ -31,8 +31,8 @@ struct alignas(kAlignment) Beam {
   std::uint32_t octant;
 };
 
-// Which of several boxes, one a lane, the beam may meet up to t_last; by the planes where it
-// enters and leaves them. A plane behind it gives a negative number, whichever the scale.
+// Which of several boxes, one a lane, the beam may meet up to t_last. Takes the planes where it
+// enters and leaves the boxes. A plane behind the beam gives a negative number with any scale.
 template <class D, class V, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Mask<D> BeamMeets(D d, const Beam<Real>& beam, V in_x, V in_y, V in_z, V out_x,
                                  V out_y, V out_z, V t_last) {
@@ -58,12 +58,12 @@ struct alignas(kAlignment) BeamStackEntry {
   std::uint32_t child;
 };
 
-// What a visitor makes of a child that some lanes may meet: done with it, or the node's children
-// are to be visited.
+// What a visitor answers for a child that some lanes may meet: it is done with it, or the child's
+// own children are to be visited.
 enum class Visit { kDone, kDescend };
 
-// Calls visit(child, lanes) for the children that `lanes` (a mask, never empty) may meet, front to
-// back, from `start` on; it may lower t_last of the lanes.
+// Calls visit(child, lanes) for each child that `lanes` (a mask, never empty) may meet, front to
+// back, beginning with `start`. The visitor may lower t_last of the lanes.
 template <typename Real, class Visitor>
 HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uint32_t start,
                           Visitor visit) {
@@ -101,7 +101,7 @@ HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uin
              << i;
     }
 
-    // Those that are left against each lane; the nearest is pushed last.
+    // Tests the children that are left against each lane. The nearest is pushed last.
     std::uint32_t order = node.order[octant];
     for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
       const std::uint32_t i = order >> 28;

@@ -1,4 +1,4 @@
-// A frustum through the tree.
+// Traces a frustum through the tree.
 #if defined(SHEAF_SIMD_TRACE_FRUSTUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_FRUSTUM_INL_H_
 #undef SHEAF_SIMD_TRACE_FRUSTUM_INL_H_
@@ -11,14 +11,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// Up to so many packets of a frustum go on as packets.
+// With this many packets left, or fewer, a frustum goes on as packets.
 template <Query kQuery, typename Real>
 HWY_INLINE std::uint32_t FewPackets() {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
   return std::max(1u, kQuery == Query::kOccluded ? lanes * 3 / 16 : lanes / 8);
 }
 
-// Packet k alone, from `child` on: it becomes a packet of its own for as long.
+// Traces packet k alone through the subtree of `child`, as a packet of its own.
 template <class Output, typename Real>
 HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<Real>& frustum,
                                      std::uint32_t k, std::uint32_t child) {
@@ -48,7 +48,7 @@ HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<R
   frustum.beam.t_last[k] = LastDepth(batch, frustum, k);
 }
 
-// PrepareFrustum has said yes.
+// PrepareFrustum has returned true.
 template <class Output, typename Real>
 HWY_NOINLINE void TraceFrustum(const Batch<Output, Real>& batch, Frustum<Real>& frustum) {
   const Lanes<Real> d;

@@ -1,4 +1,4 @@
-// A packet through the tree: while enough of its rays go the same way together, then one by one.
+// Traces a packet: together while enough of its rays go the same way, then ray by ray.
 #if defined(SHEAF_SIMD_TRACE_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_PACKET_INL_H_
 #undef SHEAF_SIMD_TRACE_PACKET_INL_H_
@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
-// Up to so many rays go on one by one.
+// With this many rays left, or fewer, they go on one by one.
 template <typename Real>
 HWY_INLINE std::uint32_t FewRays() {
   return std::max(1u, LaneCount(Lanes<Real>()) / 4);
@@ -21,12 +21,12 @@ HWY_INLINE std::uint32_t FewRays() {
 
 // The beam whose lanes are the rays of `lanes` (bits), all of one octant.
 template <typename Real>
-HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Beam<Real>& beam) {
+HWY_INLINE void MakeBeam(const Packet<Real>& packet, std::uint32_t lanes, Beam<Real>& beam) {
   const Lanes<Real> d;
   const auto first = std::countr_zero(lanes);
-  const auto in_bundle = LanesFromBits(d, lanes);
+  const auto in_beam = LanesFromBits(d, lanes);
   const auto others_as_first = [&](const Real(&values)[kPacketSize<Real>]) SHEAF_LAMBDA {
-    return hn::IfThenElse(in_bundle, hn::Load(d, values), hn::Set(d, values[first]));
+    return hn::IfThenElse(in_beam, hn::Load(d, values), hn::Set(d, values[first]));
   };
   const auto lowest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MinOfLanes(d, v)); };
   const auto highest = [&](auto v) SHEAF_LAMBDA { return hn::GetLane(hn::MaxOfLanes(d, v)); };
@@ -62,13 +62,13 @@ HWY_INLINE void BundleRays(const Packet<Real>& packet, std::uint32_t lanes, Beam
 template <typename Real>
 HWY_INLINE void UpdateRayEnds(const Packet<Real>& packet, std::uint32_t lanes, Beam<Real>& beam) {
   const Lanes<Real> d;
-  // Finite, so that a box that is entered at infinity is never met.
+  // Finite, so that a box whose entry is infinite is never met.
   const auto last = hn::Min(hn::Mul(hn::Load(d, packet.t_best), hn::Set(d, Real(kBoxFarFactor))),
                             hn::Set(d, kDefaultTMax<Real>));
   hn::Store(hn::IfThenElse(LanesFromBits(d, lanes), last, hn::Set(d, kDone<Real>)), d, beam.t_last);
 }
 
-// Primitives of a leaf whose boxes the beam may meet, as bits.
+// Bits of the leaf's primitives whose boxes the beam may meet.
 template <typename Real>
 HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t leaf,
                                     const Beam<Real>& beam) {
@@ -110,13 +110,13 @@ HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t le
   return met & ((1u << n) - 1);
 }
 
-// Rays of `lanes` (bits), all of one octant, from the child `start` on.
+// Traces the rays of `lanes` (bits), all of one octant, through the subtree of the child `start`.
 template <Query kQuery, typename Real>
 HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& packet,
                                   std::uint32_t lanes, std::uint32_t start) {
   const Lanes<Real> d;
   Beam<Real> beam;
-  BundleRays(packet, lanes, beam);
+  MakeBeam(packet, lanes, beam);
   UpdateRayEnds(packet, lanes, beam);
   TraceBeam(tree, beam, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     const std::uint32_t bits = MaskBits(d, met);
@@ -132,8 +132,8 @@ HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& pack
   });
 }
 
-// Every leaf against the packet's rays of `lanes`: for few primitives, and for rays that box tests
-// do not hold for.
+// Tests the packet's rays of `lanes` against every leaf. For scenes of few primitives, and for rays
+// outside the limits of box tests.
 template <Query kQuery, typename Real>
 HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packet,
                                  std::uint32_t lanes) {
@@ -149,8 +149,8 @@ HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packe
   }
 }
 
-// The rays of `lanes` (bits) from the child `start` on, octant by octant. Rays of which half a
-// packet or more does not go the same way are as good as random: they go one by one from the start.
+// Traces the rays of `lanes` (bits) through the subtree of the child `start`, octant by octant. An
+// octant of half a packet or less is too incoherent for a packet: its rays go one by one.
 template <Query kQuery, typename Real>
 HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lanes,
                             std::uint32_t start) {

@@ -1,5 +1,5 @@
-// Rays one by one through the tree, or a part of it: a node's eight children a vector, a leaf's
-// primitives a vector. What is left when a packet falls apart.
+// Traces single rays through the tree or a subtree, with a node's eight children or a leaf's
+// primitives in a vector. For rays whose packet has become too incoherent.
 #if defined(SHEAF_SIMD_TRACE_RAY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_RAY_INL_H_
 #undef SHEAF_SIMD_TRACE_RAY_INL_H_
@@ -26,7 +26,7 @@ HWY_INLINE hn::Vec<D> LoadPlanes(D d, const float* planes) {
   }
 }
 
-// Starts to fetch what a child is: the whole of a node, or most of a leaf.
+// Prefetches a child: all of a node, or most of a leaf.
 template <typename Real>
 HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
   constexpr std::size_t kLine = 64;
@@ -42,7 +42,7 @@ HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
   }
 }
 
-// The ray of `lane` from `start` on, a child that it may meet. Box tests must hold for it.
+// Traces the ray of `lane` through the subtree of `start`. Box tests must hold for the ray.
 template <Query kQuery, typename Real>
 HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lane,
                            std::uint32_t start) {
@@ -62,8 +62,8 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
   const std::size_t in_x = octant & 1 ? 3 : 0, in_y = octant & 2 ? 4 : 1, in_z = octant & 4 ? 5 : 2;
   const std::size_t out_x = 3 - in_x, out_y = 5 - in_y, out_z = 7 - in_z;
 
-  // Children yet to be visited, nearer ones further up. Two arrays, because what is stored in parts
-  // is slow to be loaded as a whole.
+  // Children to visit, the nearest on top. Two arrays: loading an entry whole right after its parts
+  // were stored apart would stall (no store forwarding).
   Real stack_enter[kTreeStackSize];
   std::uint32_t stack_child[kTreeStackSize];
   std::size_t size = 0;
@@ -93,7 +93,7 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
       child = node.child[first];
       met &= met - 1;
       if (met == 0) continue;
-      // The nearest goes on at once, the others wait.
+      // Continues with the nearest child and pushes the others.
       Real nearest = enters[first];
       const std::size_t base = size;
       for (; met != 0; met &= met - 1) {

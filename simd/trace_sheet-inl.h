@@ -1,8 +1,8 @@
 // A sheet: as many packets as the target has lanes, with one direction, through the tree together:
 // the rays of a directional light or of an orthographic camera.
 //
-// A lane of the beam is a packet: it enters a box where the first of its rays does, and leaves it
-// where the last does. Packets part at the leaves.
+// A lane of the beam is a packet. It enters a box where the first of its rays does, and leaves it
+// where the last does. In leaves the packets go on one by one.
 #if defined(SHEAF_SIMD_TRACE_SHEET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_SHEET_INL_H_
 #undef SHEAF_SIMD_TRACE_SHEET_INL_H_
@@ -50,7 +50,7 @@ HWY_INLINE bool HasOneDirection(const Sheet<Real>& sheet) {
   return true;
 }
 
-// The furthest that an open ray of the packet still goes.
+// The largest t at which an open ray of the packet may still hit.
 template <typename Real>
 HWY_INLINE Real LastT(const Packet<Real>& packet) {
   const Lanes<Real> d;
@@ -58,7 +58,7 @@ HWY_INLINE Real LastT(const Packet<Real>& packet) {
   return std::min(t * Real(kBoxFarFactor), kDefaultTMax<Real>);
 }
 
-// Whether the packets' rays can go as a sheet: then their boxes and the beam are ready.
+// Returns whether the packets' rays can go as a sheet. Then their box terms and the beam are ready.
 template <typename Real>
 HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
   if (!HasOneDirection(sheet)) return false;
@@ -119,7 +119,7 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
   return true;
 }
 
-// PrepareSheet has said yes.
+// PrepareSheet has returned true.
 template <Query kQuery, typename Real>
 HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
   const Lanes<Real> d;

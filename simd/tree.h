@@ -84,7 +84,7 @@ struct TreeView {
   std::uint32_t node_count;  // 0: no primitives
   BlockView<Real> blocks[kKindCount];
   float lower[3], upper[3];  // of all boxes; lower > upper without primitives
-  bool skips_boxes;  // so few primitives that boxes pay for tiles alone; set where there is no node
+  bool skips_boxes;  // so few primitives that box tests pay for frusta only; set without nodes too
 
   const BlockView<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }
   std::uint32_t primitive_count() const {

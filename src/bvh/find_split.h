@@ -1,5 +1,5 @@
-// Where to split a range of primitives in two: binned surface area heuristic (Wald 2007), in all
-// three axes at once.
+// Finds where to split a range of primitives in two, by the binned surface area heuristic (Wald
+// 2007) over all three axes.
 #ifndef SHEAF_BVH_FIND_SPLIT_H_
 #define SHEAF_BVH_FIND_SPLIT_H_
 
@@ -10,17 +10,17 @@
 
 namespace sheaf::bvh {
 
-// ---- Cost model: to be tuned by the measured speed of traversal ----
+// ---- Cost model ----
 
-// A leaf of n primitives costs kBlockCost for every kMaxLeafSize of them begun, plus kPrimitiveCost
-// each: whole blocks are tested at once. A leaf is split, where the node has room, only if its two
-// halves cost less than kWorthSplitting of it.
-// No measurement tells the kinds apart so far.
+// A leaf costs kBlockCost for each block of kMaxLeafSize primitives that it begins, because a block
+// is tested at once, plus kPrimitiveCost for each primitive. Where the node has room, a leaf is
+// split if its two halves cost less than kWorthSplitting times as much. All kinds of primitives
+// cost the same, as far as was measured.
 inline constexpr float kBlockCost = 1.0f;
 inline constexpr float kPrimitiveCost = 0.125f;
 inline constexpr float kWorthSplitting = 1.0f;
-inline constexpr std::uint32_t kSmallLeaf = 4;  // leaves of so many are never split
-// Bins an axis: a few more the more primitives there are.
+inline constexpr std::uint32_t kSmallLeaf = 4;  // leaves of up to so many are never split
+// Bins of an axis: one for every kPrimitivesPerBin primitives, between these limits.
 inline constexpr int kMinBins = 8;
 inline constexpr int kMaxBins = 32;
 inline constexpr std::uint32_t kPrimitivesPerBin = 8;
@@ -29,12 +29,13 @@ inline constexpr std::uint32_t kPrimitivesPerBin = 8;
 struct Range {
   std::uint32_t begin, end;
   PrimitiveCounts before, counts;  // by kind: of primitives before `begin`, and within
-  Box4 bounds, centroids;          // of the boxes and of the sums lower + upper
+  Box4 bounds;                     // of the primitives' boxes
+  Box4 centroids;                  // of lower + upper of each box, twice its centre
 
   std::uint32_t size() const { return end - begin; }
 };
 
-// The first kind that is there, in the order of the enumerators.
+// The first kind, in the order of the enumerators, of which the range has primitives.
 inline PrimitiveKind FirstKind(const Range& range) {
   std::uint32_t kind = 0;
   while (kind + 1 < kKindCount && range.counts.of[kind] == 0) ++kind;
@@ -51,13 +52,13 @@ enum class SplitKind {
 struct Split {
   SplitKind kind = SplitKind::kNone;
   int axis = 0, bin = 0;         // bins from `bin` on go right
-  float base = 0, scale = 0;     // bin of a primitive: truncated (sum - base) * scale
+  float base = 0, scale = 0;     // a primitive's bin is (lower + upper - base) * scale, truncated
   std::uint32_t left_count = 0;  // of kMedian and kByKind
-  float cost = 0;                // of both sides, where the range's largest extent is 1
+  float cost = 0;                // of both sides, with lengths relative to the largest extent
   Box4 left, right;              // bounds, of kBin
 };
 
-// Scale by which the largest extent of a box is 1; not finite or 0 where there is none.
+// The factor that makes the largest extent of a box 1. Not finite or 0 where the box has none.
 float UnitScale(const Box4& box);
 
 float CostOfLeaf(const Range& range);
