@@ -26,7 +26,7 @@ inline constexpr int kLeafFill = 5;
 // A frustum whose packets see more leaves than this goes as packets. Occlusion ends at any hit, so
 // that it really meets few of them.
 template <Query kQuery>
-inline constexpr int kMostLeaves = kQuery == Query::kOccluded ? 32 : 8;
+inline constexpr int kMostLeaves = kQuery == Query::kOccluded ? 8 : 8;
 
 // Bounds the rounding errors of slopes, products and sums below, relative to the largest operand.
 template <typename Real>
