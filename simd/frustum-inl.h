@@ -23,10 +23,8 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Average number of primitives in a leaf, roughly.
 inline constexpr int kLeafFill = 5;
-// A frustum whose packets see more leaves than this goes as packets. Occlusion ends at any hit, so
-// that it really meets few of them.
-template <Query kQuery>
-inline constexpr int kMostLeaves = kQuery == Query::kOccluded ? 8 : 8;
+// Leaves that a packet may see for its frustum to stay one.
+inline constexpr int kMostLeaves = 8;
 
 // Bounds the rounding errors of slopes, products and sums below, relative to the largest operand.
 template <typename Real>
@@ -114,7 +112,7 @@ HWY_INLINE Real LastDepth(const Batch<Output, Real>& batch, const Frustum<Real>&
 // Whether a packet sees so many leaves that packets are faster than the frustum. Estimated as the
 // fraction of the tree's view that a packet covers on average, times the number of leaves.
 // (low_x, high_x) and (low_y, high_y) are ranges of shears by packet. No result depends on it.
-template <Query kQuery, typename Real>
+template <typename Real>
 HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Frustum<Real>& frustum,
                          const Real* low_x, const Real* high_x, const Real* low_y,
                          const Real* high_y) {
@@ -129,8 +127,7 @@ HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Frustum<Real>& frustu
   const Real view_x = ahead > 0 ? std::min(Real(1), size(frustum.kx) / ahead) : Real(1);
   const Real view_y = ahead > 0 ? std::min(Real(1), size(frustum.ky) / ahead) : Real(1);
   const Real leaves = static_cast<Real>(tree.primitive_count()) / kLeafFill;
-  return covered * leaves >
-         kMostLeaves<kQuery> * static_cast<Real>(frustum.count) * view_x * view_y;
+  return covered * leaves > kMostLeaves * static_cast<Real>(frustum.count) * view_x * view_y;
 }
 
 // The position of the first ray in [begin, end) that can hit anything, or `end`.
@@ -183,7 +180,7 @@ HWY_INLINE bool ShareRay(const Batch<Output, Real>& batch, std::uint32_t one,
 // together to gain by it. They need one origin, octant and dominant axis, must lie within the
 // limits of box tests, and none may be almost parallel to the planes of boxes. If so, the frustum
 // is ready for TraceFrustum, and Finish has to follow.
-template <Query kQuery, class Output, typename Real>
+template <class Output, typename Real>
 HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t begin,
                                Frustum<Real>& frustum) {
   const Lanes<Real> d;
@@ -268,7 +265,7 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
     high_y[k] = highest(magnitude_y);
     beam.t_last[k] = LastDepth(batch, frustum, k);
   }
-  if (IsSpread<kQuery>(batch.tree, frustum, low_x, high_x, low_y, high_y)) return false;
+  if (IsSpread(batch.tree, frustum, low_x, high_x, low_y, high_y)) return false;
 
   // An empty packet takes the range of one that is not.
   const std::uint32_t full = (one - begin) / lanes;

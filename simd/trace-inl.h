@@ -101,7 +101,7 @@ HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence
   const bool may_stray = coherence != Coherence::kCoherent && !tree.skips_boxes;
   for (std::uint32_t begin = 0; begin < batch.count; begin += lanes * lanes) {
     const std::uint32_t end = std::min(batch.count, begin + lanes * lanes);
-    if (may_be_frustum && PrepareFrustum<Output::kQuery>(batch, begin, frustum)) {
+    if (may_be_frustum && PrepareFrustum(batch, begin, frustum)) {
       TraceFrustum(batch, frustum);
       continue;
     }
