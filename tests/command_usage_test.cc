@@ -230,6 +230,27 @@ TEST_CASE("check lists bad scenes too, and the first decides the code") {
   CHECK(Contains(odd.out, "e\\u001B[31m.obj: sound: 1 object, 0 spheres, 1 triangle, 1 light, 1 "));
 }
 
+TEST_CASE("check, info and the statistics of a frame count disks") {
+  const Workspace work;
+  const std::string path = work / "disks.json";
+  WriteText(path, R"({"materials": [{"name": "m"}], "objects": [
+      {"disk": {"center": [0, 0, -3], "radius": 1}, "material": "m"},
+      {"disk": {"center": [0, 0, -4], "radius": 2}, "material": "m"},
+      {"sphere": {"center": [0, 0, -5], "radius": 1}, "material": "m"}],
+    "cameras": [{"name": "c", "eye": [0, 0, 0], "look_at": [0, 0, -1]}]})");
+  CHECK(Contains(work.Run({"check", path}).out, "3 objects, 1 sphere, 0 triangles, 2 disks, "));
+  CHECK(json::parse(work.Run({"check", path, "--json"}).out)[0]["disks"] == 2);
+  CHECK(json::parse(work.Run({"check", kScene, "--json"}).out)[0]["disks"] == 0);
+  const json scene = json::parse(work.Run({"info", path, "--json"}).out)["scene"];
+  CHECK(scene["counts"]["disks"] == 2);
+  CHECK(scene["features"][1] == "disks");  // after the spheres, for want of triangles
+  CHECK(Contains(work.Run({"info", path}).out, "triangles 0, disks 2, "));
+  const Outcome frame =
+      work.Run({"render", path, "-q", "--size", "8x8", "-o", work / "a.png", "--json"});
+  const json primitives = json::parse(frame.out)["frames"][0]["primitives"];
+  CHECK(primitives == json{{"total", 3}, {"spheres", 1}, {"triangles", 0}, {"disks", 2}});
+}
+
 TEST_CASE("info: the machine, and a scene") {
   const Workspace work;
   const Outcome text = work.Run({"info"});

@@ -24,6 +24,14 @@ inline Exact Sqrt(Exact x) {
   return root;
 }
 
+// g++ 12 widens a float that it still has as a double without rounding it first; through memory it
+// cannot.
+inline Vec3<float> Rounded(Vec3<double> v) {
+  volatile float numbers[3] = {static_cast<float>(v.x), static_cast<float>(v.y),
+                               static_cast<float>(v.z)};
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
 inline Exact Abs(Exact x) { return x < 0 ? -x : x; }
 
 inline Vec3<Exact> Unit(Vec3<Exact> v) { return v * (1 / Sqrt(Dot(v, v))); }

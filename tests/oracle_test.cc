@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exact.h"
+#include "one_disk.h"
 #include "random_scene.h"
 #include "simd/kernels.h"
 #include "simd/query.h"
@@ -36,20 +37,25 @@ struct Errors {
 // The errors of one arithmetic on one target.
 struct Measured {
   Errors sphere_t, sphere_normal;                    // ULP, radians
+  Errors disk_t, disk_normal;                        // ULP, radians
   Errors triangle_t, barycentrics, triangle_normal;  // ULP and roundoffs, see below; radians
   Errors reflectance, refracted;                     // absolute, radians
   Errors highlight;                                  // absolute
   int spheres_in_doubt = 0, spheres_misjudged = 0;   // of near-tangent rays
+  int disks_misjudged = 0;                           // of rays at rims, half of them grazing
   int triangles_misjudged = 0;                       // of rays at edges
   int reflections_misjudged = 0;                     // of rays near the critical angle
 
   bool operator==(const Measured& other) const { return Numbers() == other.Numbers(); }
 
  private:
-  std::array<double, 13> Numbers() const {
+  std::array<double, 17> Numbers() const {
     return {sphere_t.worst,
             sphere_t.sum,
             sphere_normal.sum,
+            disk_t.worst,
+            disk_t.sum,
+            disk_normal.sum,
             triangle_t.sum,
             triangle_normal.sum,
             barycentrics.sum,
@@ -58,6 +64,7 @@ struct Measured {
             highlight.sum,
             1.0 * spheres_in_doubt,
             1.0 * spheres_misjudged,
+            1.0 * disks_misjudged,
             1.0 * triangles_misjudged,
             1.0 * reflections_misjudged};
   }
@@ -169,6 +176,35 @@ void MeasureSpheres(const Kernels<Real>& kernels, Measured& measured) {
         [&](std::uint32_t i, Vec3<Real> normal) {
           if (Dot(normals[i], normals[i]) == 0) return;  // a miss that counted as a hit
           measured.sphere_normal.Add(AngleTo(normal, normals[i]));
+        });
+  }
+}
+
+// At 1 to 10^6 radii; half of the rays come as near as 1e-7 of a radian to the plane, half of them
+// pass within 1e-5 of the rim.
+template <typename Real>
+void MeasureDisks(const Kernels<Real>& kernels, Measured& measured) {
+  Random random(64);
+  for (int round = 0; round < 140; ++round) {
+    const OneDisk disk = AnyDisk(random);
+    const auto rays = RaysAt(random, disk, std::pow(10.0, round % 7));
+    const Vec3<float> c = disk.center, n = disk.normal;
+    const Traced<Real> traced(Disk{{c.x, c.y, c.z}, disk.radius, {n.x, n.y, n.z}}, rays, kernels);
+    std::vector<ExactDiskHit> exact;
+    for (std::uint32_t i = 0; i < traced.count; ++i) {
+      exact.emplace_back(rays[i], disk);
+      if (exact[i].is_parallel || exact[i].is_in_doubt) continue;
+      measured.disks_misjudged += traced.Hits(i) != exact[i].is_hit;
+      if (!traced.Hits(i) || !exact[i].is_hit) continue;
+      measured.disk_t.Add(UlpsOff(traced.hits.view().t[i], exact[i].t));
+    }
+    traced.ForEachNormal(
+        [&](const HitBatch& batch, const SurfaceOutput<Real>& surfaces) {
+          kernels.surfaces_of(PrimitiveKind::kDisk)(traced.scene.geometry(), traced.rays.view(),
+                                                    traced.hits.view(), batch, kNeedsAll, surfaces);
+        },
+        [&](std::uint32_t i, Vec3<Real> normal) {
+          measured.disk_normal.Add(AngleTo(normal, exact[i].normal));
         });
   }
 }
@@ -355,6 +391,7 @@ template <typename Real>
 Measured Measure(const Kernels<Real>& kernels) {
   Measured measured;
   MeasureSpheres(kernels, measured);
+  MeasureDisks(kernels, measured);
   MeasureTriangles(kernels, measured);
   MeasureInterfaces(kernels, measured);
   MeasureHighlights(kernels, measured);
@@ -365,12 +402,13 @@ std::string Describe(const std::string& name, const Measured& m) {
   const auto pair = [](const Errors& e) {
     return fmt::format("{:.3g} ({:.2g})", e.worst, e.mean());
   };
-  return fmt::format("| {} | {} | {} of {} | {} | {} | {} | {} of {} | {} | {} | {} | {} | {} |",
-                     name, pair(m.sphere_t), m.spheres_misjudged, m.sphere_t.count,
-                     pair(m.sphere_normal), pair(m.triangle_t), pair(m.barycentrics),
-                     m.triangles_misjudged, m.triangle_t.count, pair(m.triangle_normal),
-                     pair(m.reflectance), pair(m.refracted), m.reflections_misjudged,
-                     pair(m.highlight));
+  return fmt::format(
+      "| {} | {} | {} of {} | {} | {} | {} of {} | {} | {} | {} | {} of {} | {} | {} | {} | {} | "
+      "{} |",
+      name, pair(m.sphere_t), m.spheres_misjudged, m.sphere_t.count, pair(m.sphere_normal),
+      pair(m.disk_t), m.disks_misjudged, m.disk_t.count, pair(m.disk_normal), pair(m.triangle_t),
+      pair(m.barycentrics), m.triangles_misjudged, m.triangle_t.count, pair(m.triangle_normal),
+      pair(m.reflectance), pair(m.refracted), m.reflections_misjudged, pair(m.highlight));
 }
 
 TEST_CASE("errors by arithmetic and target") {
@@ -395,6 +433,9 @@ TEST_CASE("errors by arithmetic and target") {
   CHECK(m.sphere_t.worst <= 1);
   CHECK(m.spheres_misjudged == 0);
   CHECK(m.sphere_normal.worst <= 1e-7);
+  CHECK(m.disk_t.worst <= 1);
+  CHECK(m.disks_misjudged == 0);
+  CHECK(m.disk_normal.worst <= 1e-7);
   CHECK(m.triangle_t.worst <= 8);
   CHECK(m.triangle_normal.worst <= 1e-7);
   CHECK(m.barycentrics.worst <= 20);

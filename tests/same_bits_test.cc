@@ -67,6 +67,36 @@ TEST_CASE("scenes with everything have the same bits on every target") {
   }
 }
 
+// Disks of every material, seen from both sides and edge on, some of them twice, in each other's
+// shadow and beside other kinds.
+TEST_CASE("disks have the same bits on every target") {
+  Scene scene = EverythingScene(9);
+  Random random(10);
+  std::vector<Object> disks;
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const Vec3d center = UniformPoint(random, -4, 4);
+    Vec3d normal = UniformPoint(random, -1, 1);
+    if (i % 4 == 0) normal = {0, i % 8 ? 1 : -1, 0};
+    disks.push_back({"", Disk{center, Uniform(random, 0.2, 2), normal}, i % 7});
+    if (i % 6 == 0) disks.push_back(disks.back());
+  }
+  scene.objects.insert(scene.objects.begin(), disks.begin(), disks.end());
+  RenderOptions options;
+  options.width = 61;
+  options.height = 47;
+  options.max_depth = 5;
+  for (const Precision precision : {Precision::kStrict, Precision::kDouble}) {
+    options.precision = precision;
+    for (const Camera& camera : scene.cameras) {
+      CAPTURE(camera.name);
+      RenderStats stats;
+      RenderOrFail(scene, camera, options, &stats);
+      CHECK(stats.disks == disks.size());
+      CheckSameBits(scene, camera, options);
+    }
+  }
+}
+
 // What a scene does not need is left out; with everything forced the bits are the same.
 TEST_CASE("skipping changes no bit") {
   std::vector<Scene> scenes = {CrystalBall(), EverythingScene(7)};

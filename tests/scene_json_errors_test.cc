@@ -113,6 +113,16 @@ const Row kMistakes[] = {
      "f:1: /objects/0/sphere/radius: expected a number in [0, 1e30], found -1"},
     {Shape(R"("sphere": {"center": [0, 0, 2e30], "radius": 1})"),
      "f:1: /objects/0/sphere/center/2: expected a number in [-1e30, 1e30], found 2e+30"},
+    {Shape("\"disk\":\n{\"radius\": 1}"), "f:1: /objects/0/disk/center: missing key"},
+    {Shape(R"("disk": {"center": [0, 0, 0]})"), "f:1: /objects/0/disk/radius: missing key"},
+    {Shape("\"disk\": {\"center\": [0, 0, 0],\n\"radius\": -1}"),
+     "f:2: /objects/0/disk/radius: expected a number in [0, 1e30], found -1"},
+    {Shape("\"disk\": {\"center\": [0, 0, 0], \"radius\": 1,\n\"normal\": [0, 0, 0]}"),
+     "f:2: /objects/0/disk/normal: the vector is zero and gives no direction"},
+    {Shape(R"("disk": {"center": [0, 0, 0], "radius": 1, "normal": 3})"),
+     "f:1: /objects/0/disk/normal: expected [x, y, z], found a number"},
+    {Shape(R"("disk": {"center": [0, 0, 0], "radius": 1, "normals": [0, 0, 1]})"),
+     "f:1: /objects/0/disk/normals: unknown key; did you mean \"normal\"?"},
     {Shape(R"("name": "x")"),
      "f:1: /objects/0: missing key; give one of \"sphere\", \"disk\", \"quad\", \"triangle\", "
      "\"mesh\", "

@@ -173,10 +173,22 @@ TEST_CASE("lights take their strength from E0 or intensity") {
   CHECK(std::get<DirectionalLight>(scene.lights[2].source).direction == Vec3d(0, -2, 0));
 }
 
+TEST_CASE("a disk has a center, a radius and a normal, by default towards +z") {
+  const Scene scene = Parse(Shape(R"("disk": {"center": [1, 2, 3], "radius": 0.5})"));
+  const Disk& disk = std::get<Disk>(scene.objects[0].shape);
+  CHECK(disk.center == Vec3d(1, 2, 3));
+  CHECK(disk.radius == 0.5);
+  CHECK(disk.normal == Vec3d(0, 0, 1));
+  const Scene turned =
+      Parse(Shape(R"("disk": {"normal": [0, -4, 3], "radius": 2, "center": [0, 0, 0]})"));
+  CHECK(std::get<Disk>(turned.objects[0].shape).normal == Vec3d(0, -4, 3));
+}
+
 TEST_CASE("odd but valid scenes are accepted") {
   CHECK(Outcome("\xEF\xBB\xBF" + Settings("{}")) == "ok");
   CHECK(Outcome("/* a */" + Settings("{}") + "// b") == "ok");
   CHECK(Outcome(Shape(R"("sphere": {"center": [0, 0, 0], "radius": 0})")) == "ok");
+  CHECK(Outcome(Shape(R"("disk": {"center": [0, 0, 0], "radius": 0})")) == "ok");
   CHECK(Outcome(Shape(R"("triangle": {"vertices": [[0, 0, 0], [0, 0, 0], [0, 0, 0]]})")) == "ok");
   CHECK(Outcome(Quad("[[0, 0, 0], [1, 0, 0], [1, 1, 1e-7], [0, 1, 0]]")) == "ok");
   CHECK(Outcome(Quad("[[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]]")) !=

@@ -28,6 +28,7 @@ Json CheckJson(const std::string& path, const OpenedScene& opened) {
                {"objects", opened.scene.objects.size()},
                {"spheres", summary.spheres},
                {"triangles", summary.triangles},
+               {"disks", summary.disks},
                {"lights", opened.scene.lights.size()},
                {"cameras", opened.scene.cameras.size()},
                {"skipped", Json::array()},
@@ -46,7 +47,9 @@ std::string CountText(const Json& json, const std::string& kind) {
 
 std::string CheckText(const Json& json) {
   std::vector<std::string> counts;
-  for (const char* kind : {"objects", "spheres", "triangles", "lights", "cameras"}) {
+  for (const char* kind : {"objects", "spheres", "triangles", "disks", "lights", "cameras"}) {
+    // Few scenes have any.
+    if (kind == std::string("disks") && json[kind] == 0) continue;
     counts.push_back(CountText(json, kind));
   }
   std::string text = fmt::format("{}: sound: {}\n", PrintablePath(json["path"].get<std::string>()),

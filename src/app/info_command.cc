@@ -94,6 +94,7 @@ Json SceneJson(const std::string& path, const Scene& scene) {
                 {{"objects", scene.objects.size()},
                  {"spheres", summary.spheres},
                  {"triangles", summary.triangles},
+                 {"disks", summary.disks},
                  {"materials", scene.materials.size()},
                  {"lights", scene.lights.size()},
                  {"cameras", scene.cameras.size()},

@@ -21,6 +21,7 @@ SceneSummary Summarize(const Scene& scene) {
   const auto counts = CountPrimitives(scene);
   summary.spheres = counts[PrimitiveKind::kSphere];
   summary.triangles = counts[PrimitiveKind::kTriangle];
+  summary.disks = counts[PrimitiveKind::kDisk];
   std::vector<const Material*> used;
   for (const Object& object : scene.objects) {
     used.push_back(&scene.materials[object.material]);
@@ -46,6 +47,7 @@ SceneSummary Summarize(const Scene& scene) {
   summary.features = {
       {"spheres", summary.spheres > 0},
       {"triangles", summary.triangles > 0},
+      {"disks", summary.disks > 0},
       {"checker textures", any_material([](const Material& m) {
          return std::holds_alternative<Checker>(m.base_colour);
        })},

@@ -19,9 +19,9 @@ struct Feature {
 };
 
 struct SceneSummary {
-  std::size_t spheres = 0, triangles = 0;  // a quad is two triangles
-  std::optional<Bounds> bounds;            // nothing where the scene has no object
-  std::vector<Feature> features;           // always the same names in the same order
+  std::size_t spheres = 0, triangles = 0, disks = 0;  // a quad is two triangles
+  std::optional<Bounds> bounds;                       // nothing where the scene has no object
+  std::vector<Feature> features;                      // always the same names in the same order
 };
 
 SceneSummary Summarize(const Scene& scene);

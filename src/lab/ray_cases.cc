@@ -51,14 +51,18 @@ void ExpectAllMiss(Report& report, const Shapes& shapes, const std::vector<Ray>&
   }
 }
 
+double UlpsOff(float t, double exact) {
+  const float rounded = static_cast<float>(exact);
+  const double ulp = static_cast<double>(std::nextafter(std::abs(rounded), kInfinity)) -
+                     std::abs(static_cast<double>(rounded));
+  return std::abs(static_cast<double>(t) - exact) / ulp;
+}
+
 void ExpectHit(Report& report, const Shapes& shapes, const Ray& ray, std::uint32_t primitive,
                double t, double ulps) {
   const Hit hit = TraceEverywhere(report, shapes, {ray}).front();
   report.Expect(hit.primitive == primitive, fmt::format("not primitive {}", primitive), &ray);
-  const float rounded = static_cast<float>(t);
-  const double ulp = static_cast<double>(std::nextafter(std::abs(rounded), kInfinity)) -
-                     std::abs(static_cast<double>(rounded));
-  const double error = std::abs(static_cast<double>(hit.t) - t) / ulp;
+  const double error = UlpsOff(hit.t, t);
   report.Expect(error <= ulps, fmt::format("t is {:.3g} ULP off, not up to {}", error, ulps), &ray);
 }
 

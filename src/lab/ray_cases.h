@@ -48,6 +48,7 @@ std::vector<Ray> AimAtEdges(const Shapes& shapes, Vec origin);
 
 void ExpectAllHit(Report& report, const Shapes& shapes, const std::vector<Ray>& rays);
 void ExpectAllMiss(Report& report, const Shapes& shapes, const std::vector<Ray>& rays);
+double UlpsOff(float t, double exact);
 // The primitive that one ray must find, and its t to within `ulps` units in the last place.
 void ExpectHit(Report& report, const Shapes& shapes, const Ray& ray, std::uint32_t primitive,
                double t, double ulps);

@@ -31,6 +31,14 @@ void OnSphere(Report& report);
 void FromCentre(Report& report);
 void BadRadius(Report& report);
 
+// disk_cases.cc
+void DiskRims(Report& report);
+void GrazingDisks(Report& report);
+void InDiskPlane(Report& report);
+void DiskSources(Report& report);
+void DiskSizes(Report& report);
+void CoplanarDisks(Report& report);
+
 // number_cases.cc
 void PowersOfTwo(Report& report);
 void MinusZero(Report& report);

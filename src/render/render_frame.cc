@@ -86,6 +86,7 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
   progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
   stats.spheres = objects.data.arrays.count(PrimitiveKind::kSphere);
   stats.triangles = objects.data.arrays.count(PrimitiveKind::kTriangle);
+  stats.disks = objects.data.arrays.count(PrimitiveKind::kDisk);
   stats.primitives = static_cast<std::uint32_t>(objects.primitives.size());
   stats.target = RunningTarget(options.target);
 

@@ -67,7 +67,8 @@ struct RenderStats {
   LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};
   int threads = 0;     // that took part
   std::string target;  // what ran: "scalar" or a SIMD target's name
-  std::uint32_t primitives = 0, spheres = 0, triangles = 0;  // a quad is two triangles
+  // A quad is two triangles.
+  std::uint32_t primitives = 0, spheres = 0, triangles = 0, disks = 0;
 };
 
 }  // namespace sheaf
