@@ -423,6 +423,8 @@ TEST_CASE("errors by arithmetic and target") {
     // No promises are made for it: that it is no worse than its documentation says.
     CHECK(fast.sphere_t.worst < 200);
     CHECK(fast.sphere_normal.mean() < 0.01);
+    CHECK(fast.disk_t.mean() < 1.2e5);
+    CHECK(fast.disk_normal.worst <= 1e-7);
     CHECK(fast.triangle_t.worst <= 8);
     CHECK(fast.refracted.worst < 1e-5);
     CHECK(fast.highlight.worst < 3e-4);
@@ -449,6 +451,9 @@ TEST_CASE("errors by arithmetic and target") {
   CHECK(m.highlight.mean() <= 5.2e-6);
   CHECK(in_double.spheres_misjudged == 0);
   CHECK(in_double.sphere_normal.worst <= 4.6e-9);
+  CHECK(in_double.disk_t.worst <= 3.4);
+  CHECK(in_double.disks_misjudged == 0);
+  CHECK(in_double.disk_normal.worst <= 3.4e-16);
   CHECK(in_double.triangle_t.worst <= 8);
   CHECK(in_double.triangle_normal.worst <= 5e-16);
   CHECK(in_double.barycentrics.worst <= 13);
