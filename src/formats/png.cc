@@ -263,7 +263,7 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_b
   if (std::fseek(file.get(), 0, SEEK_END) != 0) return InputError(path, "is no seekable file");
   const auto size = static_cast<std::size_t>(std::ftell(file.get()));
   std::fseek(file.get(), begin, SEEK_SET);
-  if (reader.row_bytes * height / (24 * 1032) > size) {
+  if (reader.row_bytes * height / (std::size_t{24} * 1032) > size) {
     return InputError(path, "has more pixels than its bytes can hold");
   }
   std::vector<std::uint8_t> bytes(reader.row_bytes * height);
