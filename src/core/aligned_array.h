@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "simd/streams.h"
+#include "src/core/huge_pages.h"
 
 namespace sheaf {
 
@@ -26,7 +27,10 @@ class AlignedArray {
   // The same, but only the last `padding` elements start as zeros: the others are written before
   // they are read.
   void AllocateForOverwrite(std::size_t size, std::size_t padding) {
-    data_.reset(static_cast<T*>(::operator new(size * sizeof(T), std::align_val_t(kAlignment))));
+    const std::size_t bytes = size * sizeof(T);
+    const std::align_val_t alignment{PagesAreHuge(bytes) ? kHugePage : kAlignment};
+    data_ = {static_cast<T*>(::operator new(bytes, alignment)), Free{alignment}};
+    if (PagesAreHuge(bytes)) AskForHugePages(data_.get(), bytes);
     std::memset(static_cast<void*>(data_.get() + (size - padding)), 0, padding * sizeof(T));
     size_ = size;
   }
@@ -39,9 +43,8 @@ class AlignedArray {
 
  private:
   struct Free {
-    void operator()(T* p) const {
-      ::operator delete(static_cast<void*>(p), std::align_val_t(kAlignment));
-    }
+    std::align_val_t alignment{kAlignment};
+    void operator()(T* p) const { ::operator delete(static_cast<void*>(p), alignment); }
   };
   std::unique_ptr<T, Free> data_;
   std::size_t size_ = 0;
