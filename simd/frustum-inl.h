@@ -23,8 +23,9 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // Average number of primitives in a leaf, roughly.
 inline constexpr int kLeafFill = 5;
-// Leaves that a packet may see for its frustum to stay one.
-inline constexpr int kMostLeaves = 8;
+// Leaves that a packet may see for its frustum to stay one. Fewer where some are screened as
+// spheres: those are culled less sharply.
+inline constexpr int kMostLeaves = 32, kMostScreenedLeaves = 8;
 
 // Bounds the rounding errors of slopes, products and sums below, relative to the largest operand.
 template <typename Real>
@@ -127,7 +128,9 @@ HWY_INLINE bool IsSpread(const TreeView<Real>& tree, const Frustum<Real>& frustu
   const Real view_x = ahead > 0 ? std::min(Real(1), size(frustum.kx) / ahead) : Real(1);
   const Real view_y = ahead > 0 ? std::min(Real(1), size(frustum.ky) / ahead) : Real(1);
   const Real leaves = static_cast<Real>(tree.primitive_count()) / kLeafFill;
-  return covered * leaves > kMostLeaves * static_cast<Real>(frustum.count) * view_x * view_y;
+  const int most = HasScreened(tree) ? kMostScreenedLeaves : kMostLeaves;
+  return covered * leaves >
+         static_cast<Real>(most) * static_cast<Real>(frustum.count) * view_x * view_y;
 }
 
 // The position of the first ray in [begin, end) that can hit anything, or `end`.
