@@ -37,7 +37,8 @@ struct alignas(kAlignment) Frustum {
   // By packet and ray. `screen` is set where there is anything but triangles.
   Real shear_x[kSize][kSize], shear_y[kSize][kSize], t_best[kSize][kSize];
   Real screen[kSize][kSize];
-  Beam<Real> beam;  // t is the distance along the dominant axis
+  Real det[kSize][kSize];  // of hits, as HitSlots has it
+  Beam<Real> beam;         // t is the distance along the dominant axis
   // By packet: the shears of its rays are within `half` of `middle`.
   alignas(kAlignment) Real middle_x[kSize];
   alignas(kAlignment) Real middle_y[kSize];
@@ -84,7 +85,7 @@ struct FrustumRays {
   HWY_INLINE const Real* shear_y() const { return frustum.shear_y[k]; }
   HWY_INLINE const Real* screen() const { return frustum.screen[k]; }
   HWY_INLINE HitSlots<Real> slots() const {
-    return batch.output.Slots(position(), frustum.t_best[k]);
+    return batch.output.Slots(position(), frustum.t_best[k], frustum.det[k]);
   }
   template <class D>
   HWY_INLINE hn::Vec<D> TMin(D d) const {
@@ -314,7 +315,9 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
   }
   hn::Store(zero, d, beam.t_min);
   beam.all_t_min = 0;
-  for (std::uint32_t k = 0; k < frustum.count; ++k) batch.output.Clear(d, begin + k * lanes);
+  for (std::uint32_t k = 0; k < frustum.count; ++k) {
+    batch.output.Clear(d, begin + k * lanes, frustum.det[k]);
+  }
   return true;
 }
 

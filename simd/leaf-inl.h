@@ -52,14 +52,17 @@ HWY_INLINE bool HasTriangles(std::uint32_t leaf) {
 // Where the hits of a vector of rays are kept.
 template <typename Real>
 struct HitSlots {
-  Real *t_best, *u, *v;  // u and v are left alone where kOccluded is asked
+  Real* t_best;
+  // Left alone where kOccluded is asked. A triangle's u and v are kept times det, because most hits
+  // are not the last: FinishSurfaceCoordinates divides. Other primitives keep 1 as det.
+  Real *u, *v, *det;
   std::uint32_t* id;
 };
 
 // Takes the lanes of `hit` whose t is nearer than what they had, or as near with a lower id. Every
 // t is at most t_best.
 template <Query kQuery, class D, class M, class V, class VI, typename Real = hn::TFromD<D>>
-HWY_INLINE void KeepHits(D d, const HitSlots<Real>& slots, M hit, V t, V u, V v, VI id) {
+HWY_INLINE void KeepHits(D d, const HitSlots<Real>& slots, M hit, V t, V u, V v, V det, VI id) {
   const IdLanes<D> di;
   const auto t_best = hn::LoadU(d, slots.t_best);
   const auto id_best = LoadIds(d, slots.id);
@@ -71,7 +74,14 @@ HWY_INLINE void KeepHits(D d, const HitSlots<Real>& slots, M hit, V t, V u, V v,
   if constexpr (kQuery == Query::kClosest) {
     hn::StoreU(hn::IfThenElse(closer, u, hn::LoadU(d, slots.u)), d, slots.u);
     hn::StoreU(hn::IfThenElse(closer, v, hn::LoadU(d, slots.v)), d, slots.v);
+    hn::StoreU(hn::IfThenElse(closer, det, hn::LoadU(d, slots.det)), d, slots.det);
   }
+}
+
+// Surface coordinates, u or v, of a vector of hits: HitSlots.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V FinishSurfaceCoordinates(D d, V kept, V det) {
+  return hn::IfThenElse(hn::Eq(det, hn::Set(d, 1)), kept, Divide(d, kept, det));
 }
 
 // A vector of rays as the tests of primitives read them. Pointers need no alignment; t_min and the
@@ -85,7 +95,9 @@ struct PacketRays {
   HWY_INLINE const Real* shear_x() const { return packet.shear_x; }
   HWY_INLINE const Real* shear_y() const { return packet.shear_y; }
   HWY_INLINE const Real* screen() const { return packet.screen; }
-  HWY_INLINE HitSlots<Real> slots() const { return {packet.t_best, packet.u, packet.v, packet.id}; }
+  HWY_INLINE HitSlots<Real> slots() const {
+    return {packet.t_best, packet.u, packet.v, packet.det, packet.id};
+  }
   template <class D>
   HWY_INLINE hn::Vec<D> TMin(D d) const {
     return hn::Load(d, packet.t_min);
@@ -117,7 +129,7 @@ HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V 
   const M within = hn::And(hn::Le(rays.TMin(d), t), hn::Le(t, hn::LoadU(d, slots.t_best)));
   const M hit = hn::And(hn::And(inside, elsewhere), within);
   if (hn::AllFalse(d, hit)) return hit;
-  KeepHits<kQuery>(d, slots, hit, t, Divide(d, v, det), Divide(d, w, det), ids);
+  KeepHits<kQuery>(d, slots, hit, t, v, w, det, ids);
   return hit;
 }
 
@@ -195,7 +207,7 @@ HWY_NOINLINE M ScreenedAgainstRays(D d, const Rays& rays, const Real* block, std
   V t, u, v;  // by the names of the kind: HitFields
   const M hit =
       Test::template Hit<kQuery>(d, pairs, fields, source, ids, t_min, t_best, met, t, u, v);
-  if (!hn::AllFalse(d, hit)) KeepHits<kQuery>(d, slots, hit, t, u, v, ids);
+  if (!hn::AllFalse(d, hit)) KeepHits<kQuery>(d, slots, hit, t, u, v, hn::Set(d, 1), ids);
   return hit;
 }
 
@@ -271,7 +283,7 @@ HWY_NOINLINE void LeafAgainstPacket(D d, const TreeView<Real>& tree, std::uint32
 // ---- One ray ----
 
 template <Query kQuery, typename Real>
-HWY_INLINE void KeepHit(Packet<Real>& packet, std::uint32_t lane, Real t, Real u, Real v,
+HWY_INLINE void KeepHit(Packet<Real>& packet, std::uint32_t lane, Real t, Real u, Real v, Real det,
                         std::uint32_t id) {
   const Real t_best = packet.t_best[lane];
   if (!(t < t_best || (t == t_best && id < packet.id[lane]))) return;
@@ -279,6 +291,7 @@ HWY_INLINE void KeepHit(Packet<Real>& packet, std::uint32_t lane, Real t, Real u
   packet.id[lane] = id;
   packet.u[lane] = u;
   packet.v[lane] = v;
+  packet.det[lane] = det;
 }
 
 template <Query kQuery, typename Real>
@@ -320,7 +333,7 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
       const int k = std::countr_zero(hits);
       const std::uint32_t id = ids[i + static_cast<std::uint32_t>(k)];
       if ((source & ~kInsideBit) == id) continue;
-      KeepHit<kQuery>(packet, lane, ts[k], us[k] / dets[k], vs[k] / dets[k], id);
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], dets[k], id);
     }
   }
 }
@@ -368,7 +381,8 @@ HWY_INLINE void ScreenedAgainstRay(const TreeView<Real>& tree, std::uint32_t lea
     hn::Store(v, d, vs);
     for (; hits != 0; hits &= hits - 1) {
       const int k = std::countr_zero(hits);
-      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], ids_of[i + static_cast<std::uint32_t>(k)]);
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], Real(1),
+                      ids_of[i + static_cast<std::uint32_t>(k)]);
     }
   }
 }

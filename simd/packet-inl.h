@@ -38,7 +38,7 @@ struct alignas(kAlignment) Packet {
   Real origin[3][kSize], direction[3][kSize];
   Real t_min[kSize];
   Real t_best[kSize];  // the ray's end: t_max, then the nearest hit, or kDone
-  Real u[kSize], v[kSize];
+  Real u[kSize], v[kSize], det[kSize];  // as HitSlots has them
   // The shear of the triangle test, and ScreenScale where there are spheres: PrepareLeafTerms.
   Real shear_x[kSize], shear_y[kSize];
   Real screen[kSize];
@@ -71,6 +71,7 @@ HWY_INLINE void ForgetHits(Packet<Real>& packet) {
   const Lanes<Real> d;
   hn::Store(hn::Zero(d), d, packet.u);
   hn::Store(hn::Zero(d), d, packet.v);
+  hn::Store(hn::Set(d, 1), d, packet.det);
   StoreIds(d, hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive), packet.id);
   packet.has_boxes = false;
 }

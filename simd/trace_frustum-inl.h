@@ -29,11 +29,12 @@ HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<R
   PrepareLeafTerms(batch.tree, packet);
   PrepareBoxes(batch.tree, packet);
   hn::Store(hn::Load(d, frustum.t_best[k]), d, packet.t_best);
-  const HitSlots<Real> slots = batch.output.Slots(i, frustum.t_best[k]);
+  const HitSlots<Real> slots = batch.output.Slots(i, frustum.t_best[k], frustum.det[k]);
   StoreIds(d, LoadIds(d, slots.id), packet.id);
   if constexpr (Output::kQuery == Query::kClosest) {
     hn::Store(hn::LoadU(d, slots.u), d, packet.u);
     hn::Store(hn::LoadU(d, slots.v), d, packet.v);
+    hn::Store(hn::LoadU(d, slots.det), d, packet.det);
   }
   TracePacketFrom<Output::kQuery>(batch.tree, packet, OpenLanes(packet), child);
   const auto ids = LoadIds(d, packet.id);
@@ -41,6 +42,7 @@ HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<R
   if constexpr (Output::kQuery == Query::kClosest) {
     hn::StoreU(hn::Load(d, packet.u), d, slots.u);
     hn::StoreU(hn::Load(d, packet.v), d, slots.v);
+    hn::StoreU(hn::Load(d, packet.det), d, slots.det);
   }
   hn::Store(hn::Load(d, packet.t_best), d, frustum.t_best[k]);
   const auto none = hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive);
@@ -72,7 +74,7 @@ HWY_NOINLINE void TraceFrustum(const Batch<Output, Real>& batch, Frustum<Real>& 
     return Visit::kDone;
   });
   for (std::uint32_t k = 0; k < frustum.count; ++k) {
-    batch.output.Finish(d, frustum.first + k * LaneCount(d), frustum.t_best[k]);
+    batch.output.Finish(d, frustum.first + k * LaneCount(d), frustum.t_best[k], frustum.det[k]);
   }
 }
 

@@ -16,15 +16,15 @@ struct OcclusionOutput {
   std::uint32_t* occluded;
 
   // Holds the ids of what was hit until Finish.
-  HWY_INLINE HitSlots<Real> Slots(std::uint32_t i, Real* t_best) const {
-    return {t_best, nullptr, nullptr, occluded + i};
+  HWY_INLINE HitSlots<Real> Slots(std::uint32_t i, Real* t_best, Real* /*det*/) const {
+    return {t_best, nullptr, nullptr, nullptr, occluded + i};
   }
   template <class D>
-  HWY_INLINE void Clear(D d, std::uint32_t i) const {
+  HWY_INLINE void Clear(D d, std::uint32_t i, Real* /*det*/) const {
     StoreIds(d, hn::Set(IdLanes<D>(), kNoPrimitive), occluded + i);
   }
   template <class D>
-  HWY_INLINE void Finish(D d, std::uint32_t i, const Real* /*t_best*/) const {
+  HWY_INLINE void Finish(D d, std::uint32_t i, const Real* /*t_best*/, const Real* /*det*/) const {
     StoreWhether(d, i, LoadIds(d, occluded + i));
   }
 
