@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "simd/query.h"
+#include "simd/reduce_rows-inl.h"
 #include "simd/streams.h"
 #include "simd/trace_packet-inl.h"
 #include "simd/tree.h"
@@ -97,18 +98,25 @@ struct FrustumRays {
   }
 };
 
-// The largest distance, along the dominant axis, at which an open ray of packet k may still hit.
-template <class Output, typename Real>
-HWY_INLINE Real LastDepth(const Batch<Output, Real>& batch, const Frustum<Real>& frustum,
-                          std::uint32_t k) {
-  const Lanes<Real> d;
+// The largest distances, along the dominant axis, at which rays of packet k may still hit.
+template <class D, class Output, typename Real>
+HWY_INLINE hn::Vec<D> LastDepths(D d, const Batch<Output, Real>& batch,
+                                 const Frustum<Real>& frustum, std::uint32_t k) {
   const std::uint32_t i = frustum.first + k * LaneCount(d);
   const auto length = hn::Abs(hn::LoadU(d, batch.direction(frustum.kz) + i));
   const auto t = hn::Load(d, frustum.t_best[k]);
   const auto done = hn::Eq(t, hn::Set(d, kDone<Real>));
   const auto end =
       hn::IfThenElse(done, t, hn::Mul(hn::Mul(t, length), hn::Set(d, Real(kBoxFarFactor))));
-  return std::min(hn::GetLane(hn::MaxOfLanes(d, end)), kDefaultTMax<Real>);
+  return hn::Min(end, hn::Set(d, kDefaultTMax<Real>));
+}
+
+// The same for the packet as a whole.
+template <class Output, typename Real>
+HWY_INLINE Real LastDepth(const Batch<Output, Real>& batch, const Frustum<Real>& frustum,
+                          std::uint32_t k) {
+  const Lanes<Real> d;
+  return hn::GetLane(hn::MaxOfLanes(d, LastDepths(d, batch, frustum, k)));
 }
 
 // Whether a packet sees so many leaves that packets are faster than the frustum. Estimated as the
@@ -198,8 +206,11 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
 
   // The range of shears of each packet, as magnitudes. Their signs are those of the octant, which
   // all rays share.
-  alignas(kAlignment) Real low_x[kPacketSize<Real>], high_x[kPacketSize<Real>];
-  alignas(kAlignment) Real low_y[kPacketSize<Real>], high_y[kPacketSize<Real>];
+  constexpr std::uint32_t kSize = kPacketSize<Real>;
+  alignas(kAlignment) Real low_x[kSize], high_x[kSize], low_y[kSize], high_y[kSize];
+  // The same by packet and ray.
+  alignas(kAlignment) Real lows_x[kSize][kSize], highs_x[kSize][kSize];
+  alignas(kAlignment) Real lows_y[kSize][kSize], highs_y[kSize][kSize], ends[kSize][kSize];
   Beam<Real>& beam = frustum.beam;
   const auto zero = hn::Zero(d);
   const auto sign_of = [&](int axis)
@@ -210,11 +221,14 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
   const auto least = hn::Set(d, Real(kMinBoxSlope));
   const auto ox = hn::Set(d, frustum.origin[0]), oy = hn::Set(d, frustum.origin[1]),
              oz = hn::Set(d, frustum.origin[2]);
+  const auto one_each = hn::Set(d, 1);
   for (std::uint32_t k = 0; k < lanes; ++k) {
-    low_x[k] = low_y[k] = high_x[k] = high_y[k] = Real(1);
-    beam.t_last[k] = kDone<Real>;
     frustum.without_hit[k] = 0;
-    if (k >= frustum.count) continue;
+    if (k >= frustum.count) {
+      for (auto& rows : {lows_x, highs_x, lows_y, highs_y}) hn::Store(one_each, d, rows[k]);
+      hn::Store(hn::Set(d, kDone<Real>), d, ends[k]);
+      continue;
+    }
     const std::uint32_t i = begin + k * lanes;
     const auto load = [&](const Real* field) SHEAF_LAMBDA { return hn::LoadU(d, field + i); };
     const auto dx = load(batch.direction(frustum.kx)), dy = load(batch.direction(frustum.ky)),
@@ -255,20 +269,20 @@ HWY_INLINE bool PrepareFrustum(const Batch<Output, Real>& batch, std::uint32_t b
                 d, frustum.screen[k]);
     }
     frustum.without_hit[k] = MaskBits(d, open);
-    if (frustum.without_hit[k] == 0) continue;
-    const auto huge = hn::Set(d, kDefaultTMax<Real>);
-    const auto lowest = [&](auto v) SHEAF_LAMBDA {
-      return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(open, v, huge)));
-    };
-    const auto highest = [&](auto v) SHEAF_LAMBDA {
-      return hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(open, v)));
-    };
-    low_x[k] = lowest(magnitude_x);
-    high_x[k] = highest(magnitude_x);
-    low_y[k] = lowest(magnitude_y);
-    high_y[k] = highest(magnitude_y);
-    beam.t_last[k] = LastDepth(batch, frustum, k);
+    // Shears are at most 1.
+    hn::Store(hn::IfThenElse(open, magnitude_x, one_each), d, lows_x[k]);
+    hn::Store(hn::IfThenElse(open, magnitude_y, one_each), d, lows_y[k]);
+    hn::Store(hn::IfThenElseZero(open, magnitude_x), d, highs_x[k]);
+    hn::Store(hn::IfThenElseZero(open, magnitude_y), d, highs_y[k]);
+    hn::Store(LastDepths(d, batch, frustum, k), d, ends[k]);
   }
+  const auto least_x = ReduceRows<MinOp>(d, lows_x), least_y = ReduceRows<MinOp>(d, lows_y);
+  hn::Store(least_x, d, low_x);
+  hn::Store(least_y, d, low_y);
+  // A packet without open rays has no width.
+  hn::Store(hn::Max(ReduceRows<MaxOp>(d, highs_x), least_x), d, high_x);
+  hn::Store(hn::Max(ReduceRows<MaxOp>(d, highs_y), least_y), d, high_y);
+  hn::Store(ReduceRows<MaxOp>(d, ends), d, beam.t_last);
   if (IsSpread(batch.tree, frustum, low_x, high_x, low_y, high_y)) return false;
 
   // An empty packet takes the range of one that is not.
