@@ -37,7 +37,7 @@ struct alignas(kAlignment) Packet {
   // Numbers first, so that whole vectors of them are aligned.
   Real origin[3][kSize], direction[3][kSize];
   Real t_min[kSize];
-  Real t_best[kSize];  // the ray's end: t_max, then the nearest hit, or kDone
+  Real t_best[kSize];                   // the ray's end: t_max, then the nearest hit, or kDone
   Real u[kSize], v[kSize], det[kSize];  // as HitSlots has them
   // The shear of the triangle test, and ScreenScale where there are spheres: PrepareLeafTerms.
   Real shear_x[kSize], shear_y[kSize];
