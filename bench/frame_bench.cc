@@ -153,7 +153,9 @@ int main(int argc, char** argv) {
   }
   const bool has_pov_ray = HasPovRay();
   if (!has_pov_ray) fmt::print(stderr, "frame_bench: povray is not installed: no rows of it\n");
-  for (const auto& [title, shown] : scenes) {
+  for (const auto& titled : scenes) {
+    const auto& title = titled.first;
+    const auto& shown = titled.second;
     for (const Camera& camera : shown.cameras) {
       const std::string row = fmt::format("Frame/{}/{}/", title, camera.name);
       for (const std::string& target : targets) {

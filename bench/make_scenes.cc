@@ -303,7 +303,7 @@ BenchScene Interior() {
   for (const double side : {-1.0, 1.0}) {
     // A wall of 192 strips from floor to vault, every other pair of them a pilaster.
     mesh.AddGrid(192, 1, [&](double u, double v) {
-      const bool is_pilaster = static_cast<int>(u * 192 + 0.5) / 2 % 2 == 0;
+      const bool is_pilaster = std::lround(u * 192) / 2 % 2 == 0;
       return Vec{side * (is_pilaster ? 7.8 : 8.0), -0.1 + 8.2 * v, 24.2 - 48.4 * u};
     });
     mesh.AddBox({side * 7.6 - 0.2, 7.6, -24}, {side * 7.6 + 0.2, 7.9, 24});

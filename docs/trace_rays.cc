@@ -18,8 +18,9 @@ int main() {
   std::vector<float> zero(kCount, 0.0f), x(kCount), y(kCount), z(kCount, -1.0f), t(kCount);
   std::vector<std::uint32_t> object(kCount);
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    x[i] = (static_cast<float>(i % 64) - 31.5f) / 64;
-    y[i] = (static_cast<float>(i / 64) - 31.5f) / 64;
+    const std::uint32_t column = i % 64, row = i / 64;
+    x[i] = (static_cast<float>(column) - 31.5f) / 64;
+    y[i] = (static_cast<float>(row) - 31.5f) / 64;
   }
   const sheaf::RayArrays rays = {zero.data(), zero.data(), zero.data(),
                                  x.data(),    y.data(),    z.data()};
