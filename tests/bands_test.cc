@@ -103,7 +103,7 @@ TEST_CASE("a band is small beside a large picture and the whole of a small one")
   RenderOptions options;
   options.max_depth = 0;
   for (const auto& [width, height, largest] :
-       {std::tuple(1280, 960, 128), {8192, 1024, 32}, {65536, 70, 32}, {1, 65536, 65536}}) {
+       {std::tuple(1280, 960, 64), {8192, 1024, 32}, {65536, 70, 32}, {1, 65536, 32768}}) {
     options.width = width;
     options.height = height;
     options.threads = 2;

@@ -15,6 +15,7 @@
 
 #include "sheaf/version.h"
 #include "src/core/atomic_file.h"
+#include "src/formats/deflate.h"
 #include "src/formats/printable.h"
 #include "src/formats/quantize.h"
 #include "src/formats/read_file.h"
@@ -40,6 +41,8 @@ void OnWarning(png_structp, png_const_charp) {}
 
 // Of the whole picture, in the file of a part.
 constexpr char kSizeKey[] = "sheaf:size";
+
+constexpr std::size_t kChunkBytes = 64 << 10;  // of compressed pixels, at least, but for the last
 
 class PngReader {
  public:
@@ -116,6 +119,7 @@ class PngWriter {
         file_(std::move(file)),
         spec_(spec),
         rows_left_(spec.window.height()),
+        filtered_(1 + static_cast<std::size_t>(spec.window.width()) * (spec.bits == 16 ? 6 : 3)),
         png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, OnError, OnWarning)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
   }
@@ -136,17 +140,30 @@ class PngWriter {
   Status WriteRow(const std::uint8_t* rgb) {
     assert(rows_left_ > 0);
     --rows_left_;
-    return StatusOf(EncodeRow(rgb));
+    // Each byte less that of the pixel before: of all filters for all rows the best one, and no
+    // row has to be filtered in five ways to choose one.
+    const std::size_t pixel = spec_.bits == 16 ? 6 : 3;
+    filtered_[0] = PNG_FILTER_VALUE_SUB;
+    std::uint8_t* const bytes = filtered_.data() + 1;
+    const std::size_t size = filtered_.size() - 1;
+    std::copy_n(rgb, pixel, bytes);
+    for (std::size_t i = pixel; i < size; ++i) {
+      bytes[i] = static_cast<std::uint8_t>(rgb[i] - rgb[i - pixel]);
+    }
+    deflater_.Write(filtered_.data(), filtered_.size());
+    return deflater_.output_size() < kChunkBytes ? Status(Done{}) : WritePixels();
   }
 
   Status Finish() {
     assert(rows_left_ == 0);
-    const Status ended = StatusOf(EncodeEnd());
+    deflater_.Finish();
+    if (const Status written = WritePixels(); !written) return written;
+    const Status ended = StatusOf(EncodeChunk("IEND", nullptr, 0));
     return ended ? file_.Commit() : ended;
   }
 
  private:
-  // False: see `complaint_`, and so for the two below.
+  // False: see `complaint_`, and so below.
   bool EncodeHeader() {
     if (info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_))) return false;
@@ -171,16 +188,16 @@ class PngWriter {
     return true;
   }
 
-  bool EncodeRow(const std::uint8_t* rgb) {
+  bool EncodeChunk(const char* name, const std::uint8_t* bytes, std::size_t size) {
     if (setjmp(png_jmpbuf(png_))) return false;
-    png_write_row(png_, rgb);
+    png_write_chunk(png_, reinterpret_cast<png_const_bytep>(name), bytes, size);
     return true;
   }
 
-  bool EncodeEnd() {
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_write_end(png_, info_);
-    return true;
+  // What is compressed.
+  Status WritePixels() {
+    const std::vector<std::uint8_t> bytes = deflater_.TakeOutput();
+    return StatusOf(EncodeChunk("IDAT", bytes.data(), bytes.size()));
   }
 
   // A failed write is kept, and later bytes are dropped, rather than thrown through libpng.
@@ -203,6 +220,8 @@ class PngWriter {
   PictureSpec spec_;
   PictureMetadata texts_;
   int rows_left_;
+  std::vector<std::uint8_t> filtered_;  // a row, behind the number of its filter
+  Deflater deflater_;
   Complaint complaint_;
   png_structp png_;
   png_infop info_ = nullptr;

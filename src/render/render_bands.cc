@@ -21,8 +21,8 @@ double SecondsSince(Clock::time_point start) {
 
 int CeilDivide(int a, int b) { return (a + b - 1) / b; }
 
-constexpr int kBandBytes = 2 << 20;
-constexpr int kBandTilesPerThread = 8;
+constexpr int kBandBytes = 512 << 10;
+constexpr int kBandTilesPerThread = 32;
 
 // Rows of pixels a band, whole tiles but where the area ends: as many as kBandBytes hold, so that
 // the two bands stay in the cache and their pages are touched once a frame (a tenth of the frame's
@@ -111,6 +111,7 @@ Status RenderBands(const PixelRect& area, const RenderOptions& options,
   for (auto& worker : workers) worker = make_worker();
 
   BandQueue queue(sink, progress.stop);
+  if (rows < area.height()) queue.StartThread();
   Status status = Done{};
   for (int y = area.y0; y < area.y1 && status; y += rows) {
     const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};

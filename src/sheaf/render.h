@@ -104,7 +104,7 @@ SHEAF_API Result<Film> Render(const Scene& scene, const Camera& camera,
 using RowSink = std::function<Status(const Film& rows)>;
 
 // Renders as Render does, the same bits and errors, in bands of rows that leave memory as they are
-// finished: it holds two bands of about 2 MiB, or a row of tiles; while one renders the sink has
+// finished: it holds two bands of about 512 KiB, or a row of tiles; while one renders the sink has
 // the other. A sink that fails ends the frame: its error is returned, and progress->stop is set.
 SHEAF_API Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
                             const RowSink& sink, RenderStats* stats = nullptr,
