@@ -63,6 +63,7 @@ struct Batch {
   const RayIntervals<Real>& intervals;
   std::uint32_t count;
   const Output& output;
+  BeamStack<Real>& stack;
 
   HWY_INLINE const Real* origin(int axis) const {
     return axis == 0 ? rays.origin_x : axis == 1 ? rays.origin_y : rays.origin_z;
@@ -178,7 +179,7 @@ HWY_INLINE bool ShareRay(const Batch<Output, Real>& batch, std::uint32_t one,
   frustum.kx = frustum.kz == 2 ? 0 : frustum.kz + 1;
   frustum.ky = frustum.kz == 0 ? 2 : frustum.kz - 1;
   const int order[3] = {frustum.kx, frustum.ky, frustum.kz};
-  bool is_within = IsWithinBoxLimits(batch.tree);
+  bool is_within = true;
   for (int axis = 0; axis < 3; ++axis) {
     is_within &= std::abs(batch.origin(axis)[one]) <= kMaxBoxCoordinate;
     frustum.origin[axis] = batch.origin(order[axis])[one];

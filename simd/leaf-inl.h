@@ -339,8 +339,8 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
 }
 
 template <Query kQuery, class Test, typename Real>
-HWY_INLINE void ScreenedAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
-                                   Packet<Real>& packet, std::uint32_t lane) {
+HWY_NOINLINE void ScreenedAgainstRay(const TreeView<Real>& tree, std::uint32_t leaf,
+                                     Packet<Real>& packet, std::uint32_t lane) {
   const LeafLanes<Real> d;
   using V = hn::Vec<LeafLanes<Real>>;
   const std::uint32_t n = LeafCount(leaf), source = packet.source[lane];

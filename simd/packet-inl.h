@@ -202,7 +202,6 @@ HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
                       hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
   fits = hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate))));
   fits = hn::And(fits, hn::Ge(hn::Load(d, packet.t_min), hn::Zero(d)));
-  if (!IsWithinBoxLimits(tree)) fits = NoLanes(d);
   packet.without_boxes = ~MaskBits(d, fits) & OpenLanes(packet);
 
   const auto least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));

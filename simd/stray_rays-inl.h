@@ -19,10 +19,13 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 inline constexpr std::uint32_t kDirectionClasses = 8 * 4;  // one axis in four is none
 
 struct StrayRays {
-  static constexpr std::uint32_t kCapacity = 2048;
+  static constexpr std::uint32_t kCapacity = 1024;
+  // Rays from so many positions at most, so that 16 bits hold an offset: this lies on the stack.
+  static constexpr std::uint32_t kSpan = 1u << 16;
 
   std::uint32_t count = 0;
-  std::uint32_t position[kCapacity];  // in the batch
+  std::uint32_t first = 0;  // position in the batch that offsets count from
+  std::uint16_t offset[kCapacity];
   std::uint8_t direction_class[kCapacity];
 };
 
@@ -51,8 +54,9 @@ HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>&
   StoreIds(d, of_lane, classes);
   const auto one = hn::Set(di, Id{classes[0]});
   if (hn::AllTrue(d, hn::RebindMask(d, hn::Eq(of_lane, one)))) return Company::kPacket;
+  if (strays.count == 0) strays.first = i;
   for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
-    strays.position[strays.count] = i + lane;
+    strays.offset[strays.count] = static_cast<std::uint16_t>(i + lane - strays.first);
     strays.direction_class[strays.count] = static_cast<std::uint8_t>(classes[lane]);
     ++strays.count;
   }
@@ -65,7 +69,7 @@ inline void SortByDirection(const StrayRays& strays, std::uint32_t* sorted) {
   for (std::uint32_t i = 0; i < strays.count; ++i) ++next[strays.direction_class[i] + 1];
   for (std::uint32_t k = 0; k < kDirectionClasses; ++k) next[k + 1] += next[k];
   for (std::uint32_t i = 0; i < strays.count; ++i) {
-    sorted[next[strays.direction_class[i]]++] = strays.position[i];
+    sorted[next[strays.direction_class[i]]++] = strays.first + strays.offset[i];
   }
 }
 

@@ -16,12 +16,41 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
+// FitsWideBoxes of src/scalar/ray_slabs.h, for the rays of `lanes`: the bits of those that pass.
+template <typename Real>
+HWY_INLINE std::uint32_t FitWideBoxes(const Packet<Real>& packet, std::uint32_t lanes) {
+  std::uint32_t fit = 0;
+  for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const int lane = std::countr_zero(rest);
+    Real size = 0, furthest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      size = std::max(size, std::abs(packet.direction[axis][lane]));
+      furthest = std::max(furthest, std::abs(packet.origin[axis][lane]));
+    }
+    const bool fits = furthest <= Real(kMaxBoxCoordinate) &&
+                      static_cast<double>(size) >= kMinWideDirection &&
+                      static_cast<double>(size) <= kMaxWideDirection;
+    fit |= static_cast<std::uint32_t>(fits) << lane;
+  }
+  return fit;
+}
+
+// Traces the packet's rays of `lanes`, which box tests in Real do not hold for.
+template <Query kQuery, typename Real>
+HWY_NOINLINE void TraceOddRays(const TreeView<Real>& tree, Packet<Real>& packet,
+                               std::uint32_t lanes) {
+  const std::uint32_t fit = FitWideBoxes(packet, lanes);
+  TraceRays<kQuery, WideSlabs<Real>>(tree, packet, fit, 0);
+  TraceEveryLeaf<kQuery>(tree, packet, lanes & ~fit);
+}
+
 // Traces the packet's open rays without those of other packets.
 template <Query kQuery, typename Real>
-HWY_INLINE void TraceAlone(const TreeView<Real>& tree, Packet<Real>& packet) {
+HWY_INLINE void TraceAlone(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                           Packet<Real>& packet) {
   PrepareBoxes(tree, packet);
-  TraceEveryLeaf<kQuery>(tree, packet, packet.without_boxes);
-  TracePacket<kQuery>(tree, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
+  if (packet.without_boxes != 0) TraceOddRays<kQuery>(tree, packet, packet.without_boxes);
+  TracePacket<kQuery>(tree, stack, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
 }
 
 // Traces the strays, packet by packet.
@@ -35,7 +64,7 @@ HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& stray
     const std::uint32_t n = std::min(lanes, strays.count - i);
     GatherPacket(batch.rays, batch.intervals, sorted + i, n, packet);
     PrepareLeafTerms(batch.tree, packet);
-    TraceAlone<Output::kQuery>(batch.tree, packet);
+    TraceAlone<Output::kQuery>(batch.tree, batch.stack, packet);
     batch.output.Scatter(packet, sorted + i, n);
   }
   strays.count = 0;
@@ -64,7 +93,7 @@ HWY_NOINLINE bool TraceAsSheet(const Batch<Output, Real>& batch, std::uint32_t b
     i += lanes;
   } while (i < end);
   if (!PrepareSheet(batch.tree, sheet)) return false;
-  TraceSheet<Output::kQuery>(batch.tree, sheet);
+  TraceSheet<Output::kQuery>(batch.tree, batch.stack, sheet);
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
     batch.output.Store(sheet.packets[k], begin + k * lanes);
   }
@@ -80,9 +109,18 @@ HWY_NOINLINE void TraceOnePacket(const Batch<Output, Real>& batch, std::uint32_t
   if (batch.tree.skips_boxes) {
     TraceEveryLeaf<Output::kQuery>(batch.tree, packet, OpenLanes(packet));
   } else {
-    TraceAlone<Output::kQuery>(batch.tree, packet);
+    TraceAlone<Output::kQuery>(batch.tree, batch.stack, packet);
   }
   batch.output.Store(packet, i);
+}
+
+// Traces the rays from `begin` on as a frustum and returns true, where they can be one.
+template <class Output, typename Real>
+HWY_NOINLINE bool TraceAsFrustum(const Batch<Output, Real>& batch, std::uint32_t begin) {
+  Frustum<Real> frustum;
+  if (!PrepareFrustum(batch, begin, frustum)) return false;
+  TraceFrustum(batch, frustum);
+  return true;
 }
 
 // Takes a square of packets at a time. They go as a frustum, as a sheet or packet by packet, or are
@@ -91,7 +129,6 @@ template <class Output, typename Real>
 HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence) {
   const TreeView<Real>& tree = batch.tree;
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
-  Frustum<Real> frustum;
   StrayRays strays;
   // On one lane a frustum is a single ray. It gains nothing where boxes do not pay.
   const bool may_be_frustum =
@@ -101,12 +138,12 @@ HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence
   const bool may_stray = coherence != Coherence::kCoherent && !tree.skips_boxes;
   for (std::uint32_t begin = 0; begin < batch.count; begin += lanes * lanes) {
     const std::uint32_t end = std::min(batch.count, begin + lanes * lanes);
-    if (may_be_frustum && PrepareFrustum(batch, begin, frustum)) {
-      TraceFrustum(batch, frustum);
-      continue;
-    }
+    if (may_be_frustum && TraceAsFrustum(batch, begin)) continue;
     if (may_be_sheet && TraceAsSheet(batch, begin, end)) continue;
-    if (strays.count + lanes * lanes > StrayRays::kCapacity) TraceStrays(batch, strays);
+    if (strays.count + lanes * lanes > StrayRays::kCapacity ||
+        (strays.count > 0 && end - strays.first > StrayRays::kSpan)) {
+      TraceStrays(batch, strays);
+    }
     for (std::uint32_t i = begin; i < end; i += lanes) {
       if (may_stray &&
           PutAside(batch.rays, batch.intervals, i, batch.count, strays) == Company::kStrays) {

@@ -52,10 +52,15 @@ HWY_INLINE hn::Mask<D> BeamMeets(D d, const Beam<Real>& beam, V in_x, V in_y, V 
   return hn::Le(enter, hn::Min(leave, t_last));
 }
 
+// Children to visit, the nearest on top, and where the lanes enter them. A packet that leaves a
+// frustum or sheet goes on above what that has left to do: together they are no deeper than the
+// tree.
 template <typename Real>
-struct alignas(kAlignment) BeamStackEntry {
-  Real enter[kPacketSize<Real>];
-  std::uint32_t child;
+struct alignas(kAlignment) BeamStack {
+  static constexpr std::uint32_t kCapacity = kTreeStackSize + 1;
+  Real enter[kCapacity][kPacketSize<Real>];
+  std::uint32_t child[kCapacity];
+  std::uint32_t size = 0;
 };
 
 // What a visitor answers for a child that some lanes may meet: it is done with it, or the child's
@@ -65,8 +70,8 @@ enum class Visit { kDone, kDescend };
 // Calls visit(child, lanes) for each child that `lanes` (a mask, never empty) may meet, front to
 // back, beginning with `start`. The visitor may lower t_last of the lanes.
 template <typename Real, class Visitor>
-HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uint32_t start,
-                          Visitor visit) {
+HWY_INLINE void TraceBeam(const TreeView<Real>& tree, BeamStack<Real>& stack, Beam<Real>& beam,
+                          std::uint32_t start, Visitor visit) {
   const Lanes<Real> d;
   const LeafLanes<Real> d8;
   const std::uint32_t octant = beam.octant;
@@ -78,16 +83,17 @@ HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uin
   }
   const auto far_factor = hn::Set(d, Real(kBoxFarFactor));
 
-  BeamStackEntry<Real> stack[kTreeStackSize];
-  std::uint32_t size = 1;
-  hn::Store(hn::Load(d, beam.t_min), d, stack[0].enter);
-  stack[0].child = start;
-  while (size > 0) {
-    const BeamStackEntry<Real>& top = stack[--size];
-    const std::uint32_t child = top.child;
+  const std::uint32_t bottom = stack.size;
+  std::uint32_t size = bottom + 1;
+  hn::Store(hn::Load(d, beam.t_min), d, stack.enter[bottom]);
+  stack.child[bottom] = start;
+  while (size > bottom) {
+    --size;
+    const std::uint32_t child = stack.child[size];
     const auto t_last = hn::Load(d, beam.t_last);
-    const auto lanes = hn::Le(hn::Load(d, top.enter), t_last);
+    const auto lanes = hn::Le(hn::Load(d, stack.enter[size]), t_last);
     if (hn::AllFalse(d, lanes)) continue;
+    stack.size = size;
     if (visit(child, lanes) == Visit::kDone) continue;
 
     const TreeNode& node = tree.nodes[child];
@@ -121,12 +127,13 @@ HWY_INLINE void TraceBeam(const TreeView<Real>& tree, Beam<Real>& beam, std::uin
           hn::Mul(hn::Min(hn::Min(leave_at(0), leave_at(1)), leave_at(2)), far_factor);
       const auto meets = hn::Le(enter, hn::Min(leave, t_last));
       if (hn::AllFalse(d, meets)) continue;
-      hn::Store(hn::IfThenElse(meets, enter, hn::Inf(d)), d, stack[size].enter);
-      stack[size].child = node.child[i];
+      hn::Store(hn::IfThenElse(meets, enter, hn::Inf(d)), d, stack.enter[size]);
+      stack.child[size] = node.child[i];
       FetchAhead(tree, node.child[i]);
       ++size;
     }
   }
+  stack.size = bottom;
 }
 
 }  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE

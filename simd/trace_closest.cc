@@ -79,7 +79,9 @@ void TraceClosestLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                        const RayIntervals<Real>& intervals, std::uint32_t count,
                        Coherence coherence, const HitOutput<Real>& hits) {
   const ClosestOutput<Real> output{intervals, hits};
-  TraceBatch(Batch<ClosestOutput<Real>, Real>{tree, rays, intervals, count, output}, coherence);
+  BeamStack<Real> stack;
+  TraceBatch(Batch<ClosestOutput<Real>, Real>{tree, rays, intervals, count, output, stack},
+             coherence);
 }
 
 SHEAF_NAME_KERNELS(TraceClosest);

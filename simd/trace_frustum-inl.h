@@ -36,7 +36,7 @@ HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<R
     hn::Store(hn::LoadU(d, slots.v), d, packet.v);
     hn::Store(hn::LoadU(d, slots.det), d, packet.det);
   }
-  TracePacketFrom<Output::kQuery>(batch.tree, packet, OpenLanes(packet), child);
+  TracePacketFrom<Output::kQuery>(batch.tree, batch.stack, packet, OpenLanes(packet), child);
   const auto ids = LoadIds(d, packet.id);
   StoreIds(d, ids, slots.id);
   if constexpr (Output::kQuery == Query::kClosest) {
@@ -54,25 +54,27 @@ HWY_NOINLINE void TraceFrustumPacket(const Batch<Output, Real>& batch, Frustum<R
 template <class Output, typename Real>
 HWY_NOINLINE void TraceFrustum(const Batch<Output, Real>& batch, Frustum<Real>& frustum) {
   const Lanes<Real> d;
-  TraceBeam(batch.tree, frustum.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
-    std::uint32_t packets = MaskBits(d, met);
-    if (IsLeaf(child)) {
-      if (HasTriangles(child)) {
-        TrianglesAgainstFrustum(batch, child, frustum, packets);
-      } else {
-        ScreenedAgainstFrustum(batch, child, frustum, packets);
-      }
-      return Visit::kDone;
-    }
-    if (static_cast<std::uint32_t>(std::popcount(packets)) > FewPackets<Output::kQuery, Real>()) {
-      return Visit::kDescend;
-    }
-    for (; packets != 0; packets &= packets - 1) {
-      TraceFrustumPacket(batch, frustum, static_cast<std::uint32_t>(std::countr_zero(packets)),
-                         child);
-    }
-    return Visit::kDone;
-  });
+  TraceBeam(batch.tree, batch.stack, frustum.beam, 0,
+            [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+              std::uint32_t packets = MaskBits(d, met);
+              if (IsLeaf(child)) {
+                if (HasTriangles(child)) {
+                  TrianglesAgainstFrustum(batch, child, frustum, packets);
+                } else {
+                  ScreenedAgainstFrustum(batch, child, frustum, packets);
+                }
+                return Visit::kDone;
+              }
+              if (static_cast<std::uint32_t>(std::popcount(packets)) >
+                  FewPackets<Output::kQuery, Real>()) {
+                return Visit::kDescend;
+              }
+              for (; packets != 0; packets &= packets - 1) {
+                TraceFrustumPacket(batch, frustum,
+                                   static_cast<std::uint32_t>(std::countr_zero(packets)), child);
+              }
+              return Visit::kDone;
+            });
   for (std::uint32_t k = 0; k < frustum.count; ++k) {
     batch.output.Finish(d, frustum.first + k * LaneCount(d), frustum.t_best[k], frustum.det[k]);
   }

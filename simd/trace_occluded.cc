@@ -55,7 +55,9 @@ void TraceOccludedLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                         const RayIntervals<Real>& intervals, std::uint32_t count,
                         Coherence coherence, std::uint32_t* occluded) {
   const OcclusionOutput<Real> output{occluded};
-  TraceBatch(Batch<OcclusionOutput<Real>, Real>{tree, rays, intervals, count, output}, coherence);
+  BeamStack<Real> stack;
+  TraceBatch(Batch<OcclusionOutput<Real>, Real>{tree, rays, intervals, count, output, stack},
+             coherence);
 }
 
 SHEAF_NAME_KERNELS(TraceOccluded);

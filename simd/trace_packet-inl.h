@@ -112,16 +112,16 @@ HWY_NOINLINE std::uint32_t CullLeaf(const TreeView<Real>& tree, std::uint32_t le
 
 // Traces the rays of `lanes` (bits), all of one octant, through the subtree of the child `start`.
 template <Query kQuery, typename Real>
-HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& packet,
-                                  std::uint32_t lanes, std::uint32_t start) {
+HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                                  Packet<Real>& packet, std::uint32_t lanes, std::uint32_t start) {
   const Lanes<Real> d;
   Beam<Real> beam;
   MakeBeam(packet, lanes, beam);
   UpdateRayEnds(packet, lanes, beam);
-  TraceBeam(tree, beam, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+  TraceBeam(tree, stack, beam, start, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     const std::uint32_t bits = MaskBits(d, met);
     if (static_cast<std::uint32_t>(std::popcount(bits)) <= FewRays<Real>()) {
-      TraceRays<kQuery>(tree, packet, bits, child);
+      TraceRays<kQuery, LaneSlabs<Real>>(tree, packet, bits, child);
     } else if (IsLeaf(child)) {
       LeafAgainstPacket<kQuery>(d, tree, child, CullLeaf(tree, child, beam), packet, met);
     } else {
@@ -133,7 +133,7 @@ HWY_NOINLINE void TracePacketFrom(const TreeView<Real>& tree, Packet<Real>& pack
 }
 
 // Tests the packet's rays of `lanes` against every leaf. For scenes of few primitives, and for rays
-// outside the limits of box tests.
+// outside the limits of all box tests.
 template <Query kQuery, typename Real>
 HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packet,
                                  std::uint32_t lanes) {
@@ -152,8 +152,8 @@ HWY_NOINLINE void TraceEveryLeaf(const TreeView<Real>& tree, Packet<Real>& packe
 // Traces the rays of `lanes` (bits) through the subtree of the child `start`, octant by octant. An
 // octant of half a packet or less is too incoherent for a packet: its rays go one by one.
 template <Query kQuery, typename Real>
-HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lanes,
-                            std::uint32_t start) {
+HWY_INLINE void TracePacket(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                            Packet<Real>& packet, std::uint32_t lanes, std::uint32_t start) {
   const std::uint32_t lane_count = LaneCount(Lanes<Real>());
   while (lanes != 0) {
     const std::uint32_t octant = packet.octant[std::countr_zero(lanes)];
@@ -164,9 +164,9 @@ HWY_INLINE void TracePacket(const TreeView<Real>& tree, Packet<Real>& packet, st
     alike &= lanes;
     lanes &= ~alike;
     if (static_cast<std::uint32_t>(std::popcount(alike)) <= lane_count / 2) {
-      TraceRays<kQuery>(tree, packet, alike, start);
+      TraceRays<kQuery, LaneSlabs<Real>>(tree, packet, alike, start);
     } else {
-      TracePacketFrom<kQuery>(tree, packet, alike, start);
+      TracePacketFrom<kQuery>(tree, stack, packet, alike, start);
     }
   }
 }

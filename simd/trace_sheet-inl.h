@@ -121,9 +121,10 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
 
 // PrepareSheet has returned true.
 template <Query kQuery, typename Real>
-HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
+HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                             Sheet<Real>& sheet) {
   const Lanes<Real> d;
-  TraceBeam(tree, sheet.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+  TraceBeam(tree, stack, sheet.beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
     std::uint32_t packets = MaskBits(d, met);
     const bool are_few =
         static_cast<std::uint32_t>(std::popcount(packets)) <= FewPacketsOfSheet<kQuery, Real>();
@@ -131,7 +132,7 @@ HWY_NOINLINE void TraceSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
     for (; packets != 0; packets &= packets - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(packets));
       Packet<Real>& packet = sheet.packets[k];
-      TracePacket<kQuery>(tree, packet, OpenLanes(packet), child);
+      TracePacket<kQuery>(tree, stack, packet, OpenLanes(packet), child);
       sheet.beam.t_last[k] = LastT(packet);
     }
     return Visit::kDone;

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kTreeWidth = 8;
 inline constexpr std::uint32_t kMaxLeafSize = 8;
 // Levels of nodes at most, the root's included, whatever the scene: a traversal's stack is an
 // array. A depth-first walk leaves at most seven children a level behind.
-inline constexpr std::uint32_t kMaxTreeDepth = 48;
+inline constexpr std::uint32_t kMaxTreeDepth = 26;
 inline constexpr std::uint32_t kTreeStackSize = kMaxTreeDepth * (kTreeWidth - 1) + 1;
 
 // A child: the index of a node, or a leaf: kLeafBit, its kind, its size less one (three bits) and
@@ -53,11 +53,16 @@ static_assert(sizeof(TreeNode) == 256);
 // contains every hit of it as computed, not only as real.
 inline constexpr float kBoxGrowth = 0x1p-20f;
 
-// Box tests hold for rays and trees within these limits; other rays are tested against every
-// primitive. No product of a box test then overflows, nor does one lose its bits.
-inline constexpr float kMaxBoxCoordinate = 0x1p39f;  // of origins and of the tree's bounds
+// Box tests hold for rays and trees within these limits. No product of a box test then overflows,
+// nor does one lose its bits.
+inline constexpr float kMaxBoxCoordinate = 0x1p39f;  // of origins and of boxes
 inline constexpr float kMinBoxDirection = 0x1p-67f;  // of a direction's largest component
 inline constexpr float kMaxBoxDirection = 0x1p67f;
+// Rays with other directions, or with t_min < 0, take them in double, one by one. All that is in
+// float is within these limits; a direction in double may be beyond them. A ray like that, or from
+// further away than kMaxBoxCoordinate, is tested against every primitive.
+inline constexpr double kMinWideDirection = 0x1p-149;
+inline constexpr double kMaxWideDirection = 0x1p128;
 // A direction's components are taken for at least this part of the largest, so that none is zero;
 // the box then gives way by twice as much of the ray's reach.
 inline constexpr float kMinBoxSlope = 0x1p-20f;
@@ -83,7 +88,7 @@ struct TreeView {
   const TreeNode* nodes;     // the root first
   std::uint32_t node_count;  // 0: no primitives
   BlockView<Real> blocks[kKindCount];
-  float lower[3], upper[3];  // of all boxes; lower > upper without primitives
+  float lower[3], upper[3];  // of all boxes but giants' (GiantBox); lower > upper without any
   bool skips_boxes;  // so few primitives that box tests pay for frusta only; set without nodes too
 
   const BlockView<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }
@@ -106,16 +111,6 @@ constexpr void ShowLeaf(const TreeView<Real>& tree, std::uint32_t leaf, Arrays& 
   });
   arrays.count = n;
   arrays.id = block.id + first;
-}
-
-// Whether box tests hold for the tree.
-template <typename Real>
-constexpr bool IsWithinBoxLimits(const TreeView<Real>& tree) {
-  bool is_within = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    is_within &= -tree.lower[axis] <= kMaxBoxCoordinate && tree.upper[axis] <= kMaxBoxCoordinate;
-  }
-  return is_within;
 }
 
 }  // namespace sheaf

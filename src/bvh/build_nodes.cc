@@ -16,7 +16,7 @@ namespace {
 // Ranges up to this size are built by one task.
 constexpr std::uint32_t kSubtreeSize = 1u << 12;
 // Nodes from this depth on halve their ranges by count: 2^27 primitives need 13 levels more.
-constexpr std::uint32_t kMedianDepth = 24;
+constexpr std::uint32_t kMedianDepth = 12;
 static_assert(kMedianDepth + 14 <= kMaxTreeDepth);
 
 struct Child {

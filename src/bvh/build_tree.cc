@@ -3,6 +3,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>
@@ -28,8 +29,12 @@ Result<Tree<Real>> Build(const GeometryView<Real>& geometry) {
   Tree<Real> tree;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr float kMax = std::numeric_limits<float>::max();
-    tree.lower[axis] = is_empty ? kMax : boxes.bounds.lower[axis];
-    tree.upper[axis] = is_empty ? -kMax : boxes.bounds.upper[axis];
+    tree.all_lower[axis] = is_empty ? kMax : boxes.all.lower[axis];
+    tree.all_upper[axis] = is_empty ? -kMax : boxes.all.upper[axis];
+    // Infinite, the other way round, where there is none but giants: box tests take that for a reach
+    // of nothing.
+    tree.lower[axis] = std::min(boxes.others.lower[axis], kMax);
+    tree.upper[axis] = std::max(boxes.others.upper[axis], -kMax);
   }
   std::uint32_t* indices[kKindCount];  // which become ids
   for (std::size_t k = 0; k < kKindCount; ++k) {

@@ -39,6 +39,8 @@ const Geometry::Data& Geometry::data() const {
   static const Data kEmpty = [] {
     Data empty;
     constexpr float kMax = std::numeric_limits<float>::max();
+    std::fill_n(empty.tree.all_lower, 3, kMax);
+    std::fill_n(empty.tree.all_upper, 3, -kMax);
     std::fill_n(empty.view.lower, 3, kMax);
     std::fill_n(empty.view.upper, 3, -kMax);
     empty.view.skips_boxes = true;
@@ -63,8 +65,8 @@ Result<Geometry> Geometry::Build(const GeometryInput& input, int threads) {
   return geometry;
 }
 
-std::array<float, 3> Geometry::lower() const { return std::to_array(data().view.lower); }
-std::array<float, 3> Geometry::upper() const { return std::to_array(data().view.upper); }
+std::array<float, 3> Geometry::lower() const { return std::to_array(data().tree.all_lower); }
+std::array<float, 3> Geometry::upper() const { return std::to_array(data().tree.all_upper); }
 
 GeometryStatistics Geometry::statistics() const {
   const TreeView<float>& tree = data().view;

@@ -59,19 +59,30 @@ BoxState MakeBoxOf(const Arrays& arrays, std::uint32_t index, PrimitiveBox& box)
   return BoxState::kFinite;
 }
 
+struct BlockBounds {
+  Box4 boxes, centroids, all, others;  // as PrimitiveBoxes has them
+};
+
 // Fills boxes[0, n) of the primitives [first, first + n) without gaps; returns how many there are,
 // or -1 where a coordinate is infinite.
 template <typename Make>
-std::int64_t FillBlock(std::uint32_t first, std::uint32_t n, PrimitiveBox* boxes, Box4& bounds,
-                       Box4& centroids, const Make& make) {
+std::int64_t FillBlock(std::uint32_t first, std::uint32_t n, PrimitiveBox* boxes,
+                       BlockBounds& bounds, const Make& make) {
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < first + n; ++i) {
     const BoxState state = make(i, boxes[count]);
     if (state == BoxState::kInfinite) return -1;
     if (state == BoxState::kNever) continue;
-    const Box4 box = BoxOf(boxes[count++]);
-    bounds.Include(box);
-    centroids.Include(box.lower + box.upper, box.lower + box.upper);
+    PrimitiveBox& made = boxes[count++];
+    bounds.all.Include(BoxOf(made));
+    if (IsGiant(made)) {
+      made = GiantBox(made.tag);
+    } else {
+      bounds.others.Include(BoxOf(made));
+    }
+    const Box4 box = BoxOf(made);
+    bounds.boxes.Include(box);
+    bounds.centroids.Include(box.lower + box.upper, box.lower + box.upper);
   }
   return count;
 }
@@ -79,7 +90,7 @@ std::int64_t FillBlock(std::uint32_t first, std::uint32_t n, PrimitiveBox* boxes
 struct Block {
   std::uint32_t first;  // box
   std::int64_t count;
-  Box4 bounds, centroids;
+  BlockBounds bounds;
 };
 
 // Makes the boxes of one kind at `boxes`; returns their number or -1.
@@ -91,7 +102,7 @@ std::int64_t FillKind(std::uint32_t n, PrimitiveBox* boxes, PrimitiveBoxes& resu
     Block& block = blocks[i];
     block.first = static_cast<std::uint32_t>(i) * kBlock;
     block.count = FillBlock(block.first, std::min(kBlock, n - block.first), boxes + block.first,
-                            block.bounds, block.centroids, make);
+                            block.bounds, make);
   });
   std::uint32_t total = 0;
   for (const Block& block : blocks) {
@@ -101,8 +112,10 @@ std::int64_t FillKind(std::uint32_t n, PrimitiveBox* boxes, PrimitiveBoxes& resu
       std::copy(boxes + block.first, boxes + block.first + block.count, boxes + total);
     }
     total += static_cast<std::uint32_t>(block.count);
-    result.bounds.Include(block.bounds);
-    result.centroids.Include(block.centroids);
+    result.bounds.Include(block.bounds.boxes);
+    result.centroids.Include(block.bounds.centroids);
+    result.all.Include(block.bounds.all);
+    result.others.Include(block.bounds.others);
   }
   return total;
 }

@@ -32,6 +32,22 @@ constexpr std::uint32_t MakeTag(PrimitiveKind kind, std::uint32_t index) {
 
 inline Box4 BoxOf(const PrimitiveBox& box) { return {Load4(box.lower), Load4(box.upper)}; }
 
+// Whether a box leaves the limits of box tests.
+inline bool IsGiant(const PrimitiveBox& box) {
+  bool is_giant = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    is_giant |= -box.lower[axis] > kMaxBoxCoordinate || box.upper[axis] > kMaxBoxCoordinate;
+  }
+  return is_giant;
+}
+
+// The box that a giant has in the tree: all within the limits, where every ray is that box tests
+// hold for. So each of them meets it, and the primitive costs what one primitive costs.
+inline PrimitiveBox GiantBox(std::uint32_t tag) {
+  constexpr float kMax = kMaxBoxCoordinate;
+  return {{-kMax, -kMax, -kMax}, tag, {kMax, kMax, kMax}, 0};
+}
+
 enum class BoxState { kFinite, kNever, kInfinite };
 
 // The box of the primitive at `place`. kNever: it has a NaN, kInfinite: an infinite coordinate;
@@ -43,10 +59,12 @@ struct PrimitiveBoxes {
   std::unique_ptr<PrimitiveBox[]> boxes;
   PrimitiveCounts counts;  // that have a box; they lie kind by kind, in the order of the input
   Box4 bounds, centroids;  // of the boxes and of the sums lower + upper
+  Box4 all;                // of the primitives, giants too as they are
+  Box4 others;             // of the primitives but giants
 };
 
-// The boxes of all primitives without NaN. Fails with kUsage where a coordinate is infinite. Runs
-// on the threads of the caller's arena.
+// The boxes of all primitives without NaN, GiantBox for giants. Fails with kUsage where a
+// coordinate is infinite. Runs on the threads of the caller's arena.
 template <typename Real>
 Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<Real>& geometry);
 

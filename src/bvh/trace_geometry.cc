@@ -12,7 +12,7 @@
 namespace sheaf {
 namespace {
 
-constexpr std::uint32_t kChunk = 1024;  // rays at a time where a result is not wanted
+constexpr std::uint32_t kChunk = 256;  // rays at a time where a result is not wanted
 
 RayView<float> Skip(RayView<float> rays, std::uint32_t first) {
   ForEachField(rays, [&](auto& field) {

@@ -23,7 +23,8 @@ struct Tree {
   AlignedArray<TreeNode> nodes;
   PrimitiveBlocks<Real> blocks[kKindCount];  // by kind
   std::uint32_t node_count = 0;
-  float lower[3], upper[3];
+  float lower[3], upper[3];          // of all but giants: see TreeView
+  float all_lower[3], all_upper[3];  // with them
 
   PrimitiveBlocks<Real>& of(PrimitiveKind kind) { return blocks[IndexOf(kind)]; }
   const PrimitiveBlocks<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }

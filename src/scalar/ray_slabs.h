@@ -29,21 +29,30 @@ Real LargestComponent(Vec3<Real> a) {
   return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
 }
 
-// Whether box tests hold for the ray: what is not within their limits is tested without boxes.
+// Whether box tests in Real hold for the ray. Others take them in double: WideSlabsOf.
 template <typename Real>
-bool FitsBoxes(const TreeView<Real>& tree, const Ray<Real>& ray) {
+bool FitsBoxes(const Ray<Real>& ray) {
   const Real size = LargestComponent(ray.direction);
-  return IsWithinBoxLimits(tree) && LargestComponent(ray.origin) <= kMaxBoxCoordinate &&
-         size >= kMinBoxDirection && size <= kMaxBoxDirection && ray.t_min >= 0;
+  return LargestComponent(ray.origin) <= kMaxBoxCoordinate && size >= kMinBoxDirection &&
+         size <= kMaxBoxDirection && ray.t_min >= 0;
 }
 
+// Whether they hold in double.
 template <typename Real>
-RaySlabs<Real> SlabsOf(const TreeView<Real>& tree, const Ray<Real>& ray) {
+bool FitsWideBoxes(const Ray<Real>& ray) {
+  const double size = static_cast<double>(LargestComponent(ray.direction));
+  return LargestComponent(ray.origin) <= kMaxBoxCoordinate && size >= kMinWideDirection &&
+         size <= kMaxWideDirection;
+}
+
+// `Real` is that of the slabs.
+template <typename Real, typename RayReal>
+RaySlabs<Real> SlabsOf(const TreeView<RayReal>& tree, const Ray<Real>& ray) {
   const Real least = LargestComponent(ray.direction) * Real(kMinBoxSlope);
   Real reach = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    reach =
-        std::max({reach, tree.upper[axis] - ray.origin[axis], ray.origin[axis] - tree.lower[axis]});
+    reach = std::max({reach, Real(tree.upper[axis]) - ray.origin[axis],
+                      ray.origin[axis] - Real(tree.lower[axis])});
   }
   RaySlabs<Real> box{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -60,6 +69,22 @@ RaySlabs<Real> SlabsOf(const TreeView<Real>& tree, const Ray<Real>& ray) {
     box.octant |= int{backward} << axis;
   }
   return box;
+}
+
+// The slabs in double of a ray that FitsWideBoxes. They move distances by kBoxFarFactor themselves,
+// because t may be negative: OutwardBy.
+template <typename Real>
+RaySlabs<double> WideSlabsOf(const TreeView<Real>& tree, const Ray<Real>& ray) {
+  const auto widen = [](Vec3<Real> a) {
+    return Vec3<double>{static_cast<double>(a.x), static_cast<double>(a.y),
+                        static_cast<double>(a.z)};
+  };
+  return SlabsOf(tree, Ray<double>{widen(ray.origin), widen(ray.direction)});
+}
+
+// The distance t moved later, or with sign -1 earlier, by what box tests allow.
+inline double OutwardBy(double t, double sign) {
+  return t + sign * std::abs(t) * (static_cast<double>(kBoxFarFactor) - 1);
 }
 
 }  // namespace sheaf::scalar

@@ -25,18 +25,23 @@ class TreeTracer {
   Hit<Real> Trace() {
     if (tree_.node_count == 0 || !IsTraceable(ray_)) return closest_;
     terms_.emplace(ray_);
-    if (!FitsBoxes(tree_, ray_)) {
-      TestEveryLeaf();
+    if (FitsBoxes(ray_)) {
+      Walk<BoxTest::kPlain>(SlabsOf(tree_, ray_));
+    } else if (FitsWideBoxes(ray_)) {
+      Walk<BoxTest::kWide>(WideSlabsOf(tree_, ray_));
     } else {
-      box_ = SlabsOf(tree_, ray_);
-      Walk();
+      TestEveryLeaf();
     }
     return closest_;
   }
 
  private:
+  // In Real for t >= 0, or in double for any t.
+  enum class BoxTest { kPlain, kWide };
+
+  template <typename BoxReal>
   struct Entry {
-    Real enter;
+    BoxReal enter;
     std::uint32_t child;
   };
 
@@ -52,13 +57,14 @@ class TreeTracer {
   }
 
   // Depth first, the nearest child first.
-  void Walk() {
-    Entry stack[kTreeStackSize];
+  template <BoxTest kTest, typename BoxReal>
+  void Walk(const RaySlabs<BoxReal>& box) {
+    Entry<BoxReal> stack[kTreeStackSize];
     std::uint32_t size = 0;
-    stack[size++] = {0, 0};
+    stack[size++] = {FirstT<kTest, BoxReal>(), 0};
     while (size > 0) {
-      const Entry entry = stack[--size];
-      if (entry.enter > LastT()) continue;
+      const Entry<BoxReal> entry = stack[--size];
+      if (entry.enter > LastT<kTest, BoxReal>()) continue;
       if (IsLeaf(entry.child)) {
         TestLeaf(entry.child);
         if (is_done()) return;
@@ -66,8 +72,8 @@ class TreeTracer {
       }
       const std::uint32_t first = size;
       const TreeNode& node = tree_.nodes[entry.child];
-      Real enter[kTreeWidth];
-      const std::uint32_t met = TestBoxes(node, enter);
+      BoxReal enter[kTreeWidth];
+      const std::uint32_t met = TestBoxes<kTest>(box, node, enter);
       for (std::uint32_t rest = met; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
         // Insertion keeps the nearest on top.
@@ -78,26 +84,43 @@ class TreeTracer {
     }
   }
 
-  // No box that is entered later can hold what counts.
-  Real LastT() const { return ray_.t_max * Real(kBoxFarFactor); }
+  // No box that is left earlier, or entered later, can hold what counts.
+  template <BoxTest kTest, typename BoxReal>
+  BoxReal FirstT() const {
+    if constexpr (kTest == BoxTest::kPlain) return ray_.t_min;
+    return static_cast<BoxReal>(OutwardBy(static_cast<double>(ray_.t_min), -1));
+  }
+  template <BoxTest kTest, typename BoxReal>
+  BoxReal LastT() const {
+    if constexpr (kTest == BoxTest::kPlain) return ray_.t_max * Real(kBoxFarFactor);
+    return static_cast<BoxReal>(OutwardBy(static_cast<double>(ray_.t_max), 1));
+  }
 
   // The children whose boxes the ray meets, as bits, and where it enters them.
-  std::uint32_t TestBoxes(const TreeNode& node, Real (&enter)[kTreeWidth]) const {
-    Real leave[kTreeWidth];
+  template <BoxTest kTest, typename BoxReal>
+  std::uint32_t TestBoxes(const RaySlabs<BoxReal>& box, const TreeNode& node,
+                          BoxReal (&enter)[kTreeWidth]) const {
+    BoxReal leave[kTreeWidth];
+    const BoxReal first = FirstT<kTest, BoxReal>(), last = LastT<kTest, BoxReal>();
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-      const auto at = [&](const int(&row)[3], const Real(&offset)[3], int axis) {
-        return node.bounds[row[axis]][i] * box_.scale[axis] + offset[axis];
+      const auto at = [&](const int(&row)[3], const BoxReal(&offset)[3], int axis) {
+        return node.bounds[row[axis]][i] * box.scale[axis] + offset[axis];
       };
-      const Real in_x = at(box_.enter_row, box_.enter, 0), in_y = at(box_.enter_row, box_.enter, 1),
-                 in_z = at(box_.enter_row, box_.enter, 2);
-      const Real out_x = at(box_.leave_row, box_.leave, 0),
-                 out_y = at(box_.leave_row, box_.leave, 1),
-                 out_z = at(box_.leave_row, box_.leave, 2);
-      enter[i] = std::max(std::max(in_x, in_y), std::max(in_z, ray_.t_min));
-      leave[i] = std::min(std::min(out_x, out_y), out_z) * Real(kBoxFarFactor);
+      const BoxReal in_x = at(box.enter_row, box.enter, 0), in_y = at(box.enter_row, box.enter, 1),
+                    in_z = at(box.enter_row, box.enter, 2);
+      const BoxReal out_x = at(box.leave_row, box.leave, 0),
+                    out_y = at(box.leave_row, box.leave, 1),
+                    out_z = at(box.leave_row, box.leave, 2);
+      leave[i] = std::min(std::min(out_x, out_y), out_z);
+      if constexpr (kTest == BoxTest::kPlain) {
+        enter[i] = std::max(std::max(in_x, in_y), std::max(in_z, first));
+        leave[i] *= BoxReal(kBoxFarFactor);
+      } else {
+        enter[i] = std::max(OutwardBy(std::max(std::max(in_x, in_y), in_z), -1), first);
+        leave[i] = OutwardBy(leave[i], 1);
+      }
     }
     std::uint32_t met = 0;
-    const Real last = LastT();
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       met |= static_cast<std::uint32_t>(enter[i] <= std::min(leave[i], last)) << i;
     }
@@ -119,7 +142,6 @@ class TreeTracer {
   Ray<Real> ray_;
   Hit<Real> closest_;
   std::optional<RayTerms<Real>> terms_;
-  RaySlabs<Real> box_;
 };
 
 template <typename Real>
