@@ -32,7 +32,6 @@ const Exception kExceptions[] = {
     {"simd/spawn_rays.cc", "SpawnRaysLanes"},
     {"simd/sphere_surface.cc", "FetchHits"},
     {"simd/triangle_surface.cc", "TriangleSurfacesLanes"},
-    {"simd/trace_ray-inl.h", "TraceRay"},
     {"simd/frustum-inl.h", "PrepareFrustum"},
 };
 

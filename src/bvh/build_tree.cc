@@ -31,8 +31,8 @@ Result<Tree<Real>> Build(const GeometryView<Real>& geometry) {
     constexpr float kMax = std::numeric_limits<float>::max();
     tree.all_lower[axis] = is_empty ? kMax : boxes.all.lower[axis];
     tree.all_upper[axis] = is_empty ? -kMax : boxes.all.upper[axis];
-    // Infinite, the other way round, where there is none but giants: box tests take that for a reach
-    // of nothing.
+    // Infinite, the other way round, where there is none but giants: box tests take that for a
+    // reach of nothing.
     tree.lower[axis] = std::min(boxes.others.lower[axis], kMax);
     tree.upper[axis] = std::max(boxes.others.upper[axis], -kMax);
   }
