@@ -160,8 +160,9 @@ struct HitArrays {
 
 // The nearest hit of each of `count` rays; of equal t the lowest primitive. Rays with a component
 // that is not finite, with no direction or with t_min > t_max miss. Rays with t_min < 0 or with
-// directions of odd length take a little longer; rays from further away than 5e11 are tested against
-// every primitive. Takes at most 64 KiB of stack. Safe to call from any number of threads at once.
+// directions of odd length take a little longer; rays from further away than 5e11 are tested
+// against every primitive. Takes at most 64 KiB of stack. Safe to call from any number of threads
+// at once.
 SHEAF_API void TraceClosest(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
                             const HitArrays& hits, const TraceOptions& options = {});
 
