@@ -16,6 +16,7 @@
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "simd/tree.h"
+#include "src/core/aligned_array.h"
 #include "src/core/running_target.h"
 #include "src/scalar/trace_tree.h"
 
@@ -41,12 +42,18 @@ RayCoherence CoherenceOf(RayKind kind) {
   return RayCoherence::kUnknown;
 }
 
-// What a tracer answers. Of shadow rays, `primitive` is 0 where something was hit.
+// What a tracer answers. Of shadow rays, `primitive` is 0 where something was hit. In memory of the
+// same kind as Embree's rays.
 struct Answers {
-  std::vector<float> t, u, v;
-  std::vector<std::uint32_t> primitive;
+  std::uint32_t count;
+  AlignedArray<float> t, u, v;
+  AlignedArray<std::uint32_t> primitive;
 
-  explicit Answers(std::uint32_t n) : t(n), u(n), v(n), primitive(n, kNoPrimitive) {}
+  explicit Answers(std::uint32_t n) : count(n) {
+    for (auto* array : {&t, &u, &v}) array->Allocate(n);
+    primitive.Allocate(n);
+    std::fill_n(primitive.data(), n, kNoPrimitive);
+  }
 };
 
 void TraceSheaf(const Geometry& geometry, const RayBatch& batch, Query query,
@@ -66,7 +73,9 @@ void TraceSheaf(const Geometry& geometry, const RayBatch& batch, Query query,
 // Makes the 1 and 0 of TraceOccluded what Answers says.
 void NumberOccluded(Query query, Answers& answers) {
   if (query == Query::kClosest) return;
-  for (std::uint32_t& primitive : answers.primitive) primitive = primitive ? 0 : kNoPrimitive;
+  for (std::uint32_t i = 0; i < answers.count; ++i) {
+    answers.primitive[i] = answers.primitive[i] ? 0 : kNoPrimitive;
+  }
 }
 
 void TraceScalar(const TreeView<float>& tree, const RayBatch& batch, Query query,
@@ -106,7 +115,7 @@ Answers AnswersOf(const EmbreeRays& rays, std::uint32_t count, Query query,
 
 Differences Compare(const Answers& sheaf, const Answers& embree, Query query) {
   Differences differences;
-  for (std::size_t i = 0; i < sheaf.primitive.size(); ++i) {
+  for (std::uint32_t i = 0; i < sheaf.count; ++i) {
     const std::uint32_t ours = sheaf.primitive[i], theirs = embree.primitive[i];
     if (ours == kNoPrimitive || theirs == kNoPrimitive) {
       if (theirs != ours)
@@ -127,7 +136,7 @@ std::uint32_t CountScalarDifferences(const Answers& sheaf, const Answers& scalar
     return std::bit_cast<std::uint32_t>(a) != std::bit_cast<std::uint32_t>(b);
   };
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < sheaf.primitive.size(); ++i) {
+  for (std::uint32_t i = 0; i < sheaf.count; ++i) {
     count += sheaf.primitive[i] != scalar.primitive[i] ||
              (query == Query::kClosest &&
               (differ(sheaf.t[i], scalar.t[i]) || differ(sheaf.u[i], scalar.u[i]) ||
@@ -220,7 +229,8 @@ Comparison CompareKind(const BenchScene& scene, const Geometry& geometry, Embree
   TraceOptions trace_options;
   trace_options.interval = IntervalOf(batch.intervals);
   if (options.hints == Hints::kGiven) trace_options.coherence = CoherenceOf(kind);
-  std::vector<Answers> answers(options.targets.size(), Answers(batch.count));
+  std::vector<Answers> answers;
+  for (std::size_t i = 0; i < options.targets.size(); ++i) answers.emplace_back(batch.count);
   Answers scalar_answers(batch.count);
 
   std::vector<Contestant> contestants;
@@ -295,7 +305,8 @@ void CompareTracers(const BenchScene& scene, const CompareOptions& options,
       report(CompareKind(scene, geometry.value(), embree, primary, kind, options));
       continue;
     }
-    const RayBatch batch = SecondaryRays(scene, kind, primary, hits.t, hits.primitive);
+    const RayBatch batch = SecondaryRays(scene, kind, primary, {hits.t.data(), hits.count},
+                                         {hits.primitive.data(), hits.count});
     if (batch.count == 0) continue;
     report(CompareKind(scene, geometry.value(), embree, batch, kind, options));
   }

@@ -19,6 +19,7 @@
 #include "bench/compare_tracers.h"
 #include "bench/embree_peer.h"
 #include "bench/make_scenes.h"
+#include "bench/read_mesh.h"
 #include "sheaf/target.h"
 #include "src/core/running_target.h"
 
@@ -35,7 +36,8 @@ enum class Table { kRays, kBuild, kGrowth };
 
 struct Request {
   CompareOptions compare;
-  std::string scene;  // part of the name
+  std::string scene;               // part of the name
+  std::optional<BenchScene> mesh;  // of the user, instead of the catalogue's scenes
   std::uint32_t largest = kUsualPrimitives;
   Table table = Table::kRays;
   std::string json_path, chart_path;
@@ -54,10 +56,16 @@ std::vector<const SceneMaker*> ChooseScenes(const Request& request) {
   return chosen;
 }
 
-BenchScene Make(const SceneMaker& maker) {
-  BenchScene scene = maker.make();
-  scene.name = maker.name;
-  return scene;
+// Calls run(scene) for the user's mesh or each scene of the catalogue that is asked for, which is
+// made then and forgotten after it.
+template <typename Run>
+void ForEachScene(const Request& request, Run run) {
+  if (request.mesh) return run(*request.mesh);
+  for (const SceneMaker* maker : ChooseScenes(request)) {
+    BenchScene scene = maker->make();
+    scene.name = maker->name;
+    run(scene);
+  }
 }
 
 // ---- JSON ----
@@ -127,12 +135,12 @@ void PrintRays(const Comparison& comparison) {
 Json RunRays(const Request& request) {
   Json rows = Json::array();
   PrintRayHeader();
-  for (const SceneMaker* maker : ChooseScenes(request)) {
-    CompareTracers(Make(*maker), request.compare, [&](const Comparison& comparison) {
+  ForEachScene(request, [&](const BenchScene& scene) {
+    CompareTracers(scene, request.compare, [&](const Comparison& comparison) {
       PrintRays(comparison);
       rows.push_back(ToJson(comparison));
     });
-  }
+  });
   return rows;
 }
 
@@ -140,8 +148,8 @@ Json RunBuild(const Request& request) {
   Json rows = Json::array();
   fmt::print("{:<16}{:>11}{:>8}{:>12}{:>11}{:>11}{:>9}{:>13}{:>12}\n", "scene", "primitives",
              "threads", "Embree ms", "Sheaf ms", "tree ms", "/Embree", "Embree B/pr", "Sheaf B/pr");
-  for (const SceneMaker* maker : ChooseScenes(request)) {
-    const BuildComparison comparison = CompareBuilds(Make(*maker), request.compare.repetitions);
+  ForEachScene(request, [&](const BenchScene& scene) {
+    const BuildComparison comparison = CompareBuilds(scene, request.compare.repetitions);
     for (const BuildTimes& t : comparison.times) {
       fmt::print("{:<16}{:>11}{:>8}{:>12.2f}{:>11.2f}{:>11.2f}{:>9.2f}{:>13.1f}{:>12.1f}\n",
                  comparison.scene, comparison.primitives, t.threads, t.embree, t.sheaf,
@@ -150,7 +158,7 @@ Json RunBuild(const Request& request) {
     }
     std::fflush(stdout);
     rows.push_back(ToJson(comparison));
-  }
+  });
   return rows;
 }
 
@@ -185,8 +193,8 @@ Json RunGrowth(const Request& request) {
   for (const std::string& target : request.compare.targets) table += "\t" + target;
   table += "\n";
   fmt::print("# nanoseconds a primary ray\n{}", table);
-  for (const SceneMaker* maker : ChooseScenes(request)) {
-    CompareTracers(Make(*maker), request.compare, [&](const Comparison& comparison) {
+  ForEachScene(request, [&](const BenchScene& scene) {
+    CompareTracers(scene, request.compare, [&](const Comparison& comparison) {
       std::string row = fmt::format("{}\t{:.2f}\t{:.2f}", comparison.primitives,
                                     1e3 / comparison.embree_mrays, 1e3 / comparison.scalar_mrays);
       for (const TargetResult& result : comparison.targets) {
@@ -197,7 +205,7 @@ Json RunGrowth(const Request& request) {
       table += row + "\n";
       rows.push_back(ToJson(comparison));
     });
-  }
+  });
   if (!request.chart_path.empty() && !DrawChart(table, request.chart_path)) {
     fmt::print(stderr, "embree_bench: no chart, gnuplot is not there or failed\n");
   }
@@ -249,6 +257,8 @@ int Main(int argc, char** argv) {
   std::vector<std::string> targets = {"best"}, kinds = {"primary", "shadow", "mirror", "diffuse"};
   app.add_flag("--list", lists, "name the scenes");
   app.add_option("--scene", request.scene, "only scenes whose name contains this");
+  std::string mesh_path;
+  auto* mesh = app.add_option("--mesh", mesh_path, "a model or scene file instead of these scenes");
   app.add_option("--rays", kinds, "primary, shadow, mirror, diffuse")->delimiter(',');
   app.add_option("--target", targets, "Sheaf's targets; best, or all")->delimiter(',');
   app.add_option("--repetitions", request.compare.repetitions, "medians of this many runs (7)")
@@ -258,6 +268,7 @@ int Main(int argc, char** argv) {
   auto* build = app.add_flag("--build", builds, "the build table instead");
   auto* growth = app.add_flag("--growth", grows, "primary rays from 1k to 10M triangles, as TSV");
   build->excludes(growth);
+  mesh->excludes(growth);
   app.add_option("--chart", request.chart_path, "draw --growth with gnuplot, as SVG")
       ->needs(growth);
   app.add_option("--json", request.json_path, "also write the results to this file");
@@ -282,7 +293,12 @@ int Main(int argc, char** argv) {
     return Fail(fmt::format("usable targets: {}", fmt::join(UsableTargets(), ", ")));
   }
   request.compare.targets = *parsed_targets;
-  if (ChooseScenes(request).empty()) return Fail("no scene has such a name (--list)");
+  if (!mesh_path.empty()) {
+    Result<BenchScene> read = ReadMesh(mesh_path);
+    if (!read) return Fail(read.error().message);
+    request.mesh = std::move(read).value();
+  } else if (ChooseScenes(request).empty())
+    return Fail("no scene has such a name (--list)");
 
   const std::string embree = fmt::format("{} isa={}", RTC_VERSION_STRING, EmbreeIsa());
   fmt::print("# Embree {}; Sheaf on {}; medians of {}{}\n", embree,

@@ -27,10 +27,11 @@ class AlignedArray {
   // The same, but only the last `padding` elements start as zeros: the others are written before
   // they are read.
   void AllocateForOverwrite(std::size_t size, std::size_t padding) {
-    const std::size_t bytes = size * sizeof(T);
-    const std::align_val_t alignment{PagesAreHuge(bytes) ? kHugePage : kAlignment};
+    const bool is_huge = PagesAreHuge(size * sizeof(T));
+    const std::size_t bytes = is_huge ? RoundUpToHugePages(size * sizeof(T)) : size * sizeof(T);
+    const std::align_val_t alignment{is_huge ? kHugePage : kAlignment};
     data_ = {static_cast<T*>(::operator new(bytes, alignment)), Free{alignment}};
-    if (PagesAreHuge(bytes)) AskForHugePages(data_.get(), bytes);
+    if (is_huge) AskForHugePages(data_.get(), bytes);
     std::memset(static_cast<void*>(data_.get() + (size - padding)), 0, padding * sizeof(T));
     size_ = size;
   }

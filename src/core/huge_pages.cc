@@ -8,8 +8,7 @@ namespace sheaf {
 
 void AskForHugePages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
-  // The last part of a page is left alone: what follows it is not this array's.
-  madvise(data, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+  madvise(data, bytes, MADV_HUGEPAGE);
 #endif
 }
 
