@@ -28,8 +28,8 @@ VertexAttributes AttributesOf(const Scene& scene) {
 template <typename Real>
 class GeometryWriter {
  public:
-  GeometryWriter(const Scene& scene, CompiledGeometry<Real>& to)
-      : attributes_(AttributesOf(scene)), to_(to), arrays_(to.data.arrays) {
+  GeometryWriter(const Scene& scene, const ScenePlacement& placement, CompiledGeometry<Real>& to)
+      : placement_(placement), attributes_(AttributesOf(scene)), to_(to), arrays_(to.data.arrays) {
     const PrimitiveCounts counts = Narrow(CountPrimitives(scene));
     arrays_ = GeometryArrays<Real>(counts, attributes_);
     to_.primitives.reserve(counts.total());
@@ -41,7 +41,7 @@ class GeometryWriter {
     material_ = object.material;
     if (const auto* mesh = std::get_if<Mesh>(&object.shape)) return AddMesh(*mesh);
     ForEachPrimitive(object.shape, [&](const ShapePrimitive& primitive) { AddPlain(primitive); });
-    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(point); });
+    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(placement_.Point(point)); });
   }
 
   const PointBounds& bounds() const { return bounds_; }
@@ -49,7 +49,7 @@ class GeometryWriter {
  private:
   // A primitive that is no mesh's.
   void AddPlain(const ShapePrimitive& primitive) {
-    const std::uint32_t i = Put(primitive.kind, primitive.fields);
+    const std::uint32_t i = Put(primitive.kind, Placed(primitive));
     if (primitive.kind != PrimitiveKind::kTriangle) return;
     for (int vertex = 0; vertex < 3; ++vertex) {
       if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, primitive.uv[vertex]);
@@ -61,10 +61,11 @@ class GeometryWriter {
   void AddMesh(const Mesh& mesh) {
     for (const auto& corners : mesh.triangles) {
       std::array<double, kMaxFields> vertices;
-      for (std::size_t k = 0; k < 9; ++k) {
-        vertices[k] = mesh.positions[corners[k / 3]][static_cast<int>(k % 3)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d vertex = placement_.Point(Vec3d(mesh.positions[corners[k]]));
+        Include(vertex);
+        for (int axis = 0; axis < 3; ++axis) vertices[3 * k + axis] = vertex[axis];
       }
-      for (const std::uint32_t corner : corners) Include(Vec3d(mesh.positions[corner]));
       const std::uint32_t i = Put(PrimitiveKind::kTriangle, vertices);
       for (int vertex = 0; vertex < 3; ++vertex) {
         const std::uint32_t from = corners[static_cast<std::size_t>(vertex)];
@@ -83,6 +84,18 @@ class GeometryWriter {
         }
       }
     }
+  }
+
+  // The primitive's fields where they are computed in: its points, and its radius if it has one.
+  std::array<double, kMaxFields> Placed(const ShapePrimitive& primitive) const {
+    std::array<double, kMaxFields> fields = primitive.fields;
+    const bool is_triangle = primitive.kind == PrimitiveKind::kTriangle;
+    for (std::size_t at = 0; at < (is_triangle ? 9 : 3); at += 3) {
+      const Vec3d point = placement_.Point({fields[at], fields[at + 1], fields[at + 2]});
+      for (int axis = 0; axis < 3; ++axis) fields[at + axis] = point[axis];
+    }
+    if (!is_triangle) fields[3] = placement_.Length(fields[3]);
+    return fields;
   }
 
   // Returns the index among its kind.
@@ -112,6 +125,7 @@ class GeometryWriter {
     bounds_.high = glm::max(bounds_.high, point);
   }
 
+  const ScenePlacement& placement_;
   VertexAttributes attributes_;
   CompiledGeometry<Real>& to_;
   GeometryArrays<Real>& arrays_;
@@ -123,13 +137,15 @@ class GeometryWriter {
 }  // namespace
 
 template <typename Real>
-PointBounds CompileGeometry(const Scene& scene, CompiledGeometry<Real>& to) {
-  GeometryWriter<Real> writer(scene, to);
+PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,
+                            CompiledGeometry<Real>& to) {
+  GeometryWriter<Real> writer(scene, placement, to);
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) writer.Add(i, scene.objects[i]);
   return writer.bounds();
 }
 
-template PointBounds CompileGeometry(const Scene&, CompiledGeometry<float>&);
-template PointBounds CompileGeometry(const Scene&, CompiledGeometry<double>&);
+template PointBounds CompileGeometry(const Scene&, const ScenePlacement&, CompiledGeometry<float>&);
+template PointBounds CompileGeometry(const Scene&, const ScenePlacement&,
+                                     CompiledGeometry<double>&);
 
 }  // namespace sheaf

@@ -10,6 +10,7 @@
 #include "sheaf/scene.h"
 #include "simd/primitives.h"
 #include "src/bvh/geometry_data.h"
+#include "src/render/place_scene.h"
 #include "src/stream/frame_view.h"
 
 namespace sheaf {
@@ -23,7 +24,7 @@ struct CompiledGeometry {
   std::vector<std::uint32_t> object_of_primitive;  // likewise
 };
 
-// Around all that primitives are made of; low > high where there are none.
+// Around all that primitives are made of, where they are placed; low > high where there are none.
 struct PointBounds {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
@@ -31,7 +32,8 @@ struct PointBounds {
 
 // Fills `to`, all but its tree. The scene has no more primitives of a kind than CheckCounts allows.
 template <typename Real>
-PointBounds CompileGeometry(const Scene& scene, CompiledGeometry<Real>& to);
+PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,
+                            CompiledGeometry<Real>& to);
 
 }  // namespace sheaf
 

@@ -110,24 +110,49 @@ double Reach(const PointBounds& bounds, const glm::dvec3& p) {
   return LengthOf(glm::max(glm::abs(bounds.low - p), glm::abs(bounds.high - p)));
 }
 
+// A light's falloff where lengths are placed ones. Both it and the light's colour are scaled by a
+// power of two that keeps the largest of the three near 1.
+void PlaceFalloff(const ScenePlacement& placement, Falloff& falloff, Colour& colour) {
+  if (placement.scale == 1) return;
+  falloff.linear /= placement.scale;
+  falloff.quadratic = falloff.quadratic / placement.scale / placement.scale;
+  const double largest = std::max({falloff.constant, falloff.linear, falloff.quadratic});
+  const double unit = std::ldexp(1.0, -std::ilogb(largest));
+  falloff = {falloff.constant * unit, falloff.linear * unit, falloff.quadratic * unit};
+  colour = colour * unit;
+}
+
+// Where all of a light is known but its place.
+struct LightSetting {
+  const ScenePlacement& placement;
+  const PointBounds& bounds;  // placed
+  Colour colour;
+};
+
 template <typename Real>
-void StoreSource(const DirectionalLight& sun, const PointBounds& /*bounds*/,
-                 LightData<Real>& data) {
+void StoreSource(const DirectionalLight& sun, const LightSetting& setting, LightData<Real>& data) {
   data.kind = LightKind::kDirectional;
+  Store(setting.colour, data.rgb);
   Store(-Unit(sun.direction), data.vector);
   data.falloff[0] = 1;
 }
 
 template <typename Real>
-void StoreSource(const PointLight& point, const PointBounds& bounds, LightData<Real>& data) {
+void StoreSource(const PointLight& point, const LightSetting& setting, LightData<Real>& data) {
+  const PointBounds& bounds = setting.bounds;
+  const Vec3d position = setting.placement.Point(point.position);
   const double diameter = LengthOf(bounds.high - bounds.low);
   const bool is_near =
-      Reach(bounds, point.position) <= kMaxLightDiameters * diameter;  // false without objects
+      Reach(bounds, position) <= kMaxLightDiameters * diameter;  // false without objects
+  Falloff falloff = point.falloff;
+  Colour colour = setting.colour;
+  PlaceFalloff(setting.placement, falloff, colour);
+  Store(colour, data.rgb);
   data.kind = is_near ? LightKind::kPointFromLight : LightKind::kPointFromSurface;
-  Store(point.position, data.vector);
-  data.falloff[0] = static_cast<Real>(point.falloff.constant);
-  data.falloff[1] = static_cast<Real>(point.falloff.linear);
-  data.falloff[2] = static_cast<Real>(point.falloff.quadratic);
+  Store(position, data.vector);
+  data.falloff[0] = static_cast<Real>(falloff.constant);
+  data.falloff[1] = static_cast<Real>(falloff.linear);
+  data.falloff[2] = static_cast<Real>(falloff.quadratic);
   if (!point.cone) return;
   data.is_spot = 1;
   Store(Unit(point.cone->direction), data.axis);
@@ -141,13 +166,14 @@ void StoreSource(const PointLight& point, const PointBounds& bounds, LightData<R
 
 template <typename Real>
 LightData<Real> CompileLight(const Light& light, const Settings& settings,
-                             const PointBounds& bounds) {
+                             const ScenePlacement& placement, const PointBounds& bounds) {
   LightData<Real> data{};
   data.casts_shadows = light.casts_shadows;
-  Store(light.colour * (light.intensity * settings.exposure), data.rgb);
+  const LightSetting setting{placement, bounds,
+                             light.colour * (light.intensity * settings.exposure)};
   Match(
-      light.source, [&](const PointLight& point) { StoreSource(point, bounds, data); },
-      [&](const DirectionalLight& sun) { StoreSource(sun, bounds, data); });
+      light.source, [&](const PointLight& point) { StoreSource(point, setting, data); },
+      [&](const DirectionalLight& sun) { StoreSource(sun, setting, data); });
   return data;
 }
 
@@ -168,9 +194,9 @@ double PlaneStep(const ProjectionKind& kind, double number, int height) {
 }  // namespace
 
 template <typename Real>
-CompiledScene<Real> CompileScene(const Scene& scene) {
+CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement) {
   CompiledScene<Real> compiled;
-  const PointBounds bounds = CompileGeometry(scene, compiled.objects);
+  const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
   for (const Material& material : scene.materials) {
     MaterialData<Real> data = CompileMaterial<Real>(material, scene.settings);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
@@ -187,14 +213,15 @@ CompiledScene<Real> CompileScene(const Scene& scene) {
     if (!mesh->colours.empty()) needs |= kNeedsTint;
   }
   for (const Light& light : scene.lights) {
-    compiled.lights.push_back(CompileLight<Real>(light, scene.settings, bounds));
+    compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
   }
   Store(scene.settings.background, compiled.background);
   return compiled;
 }
 
 template <typename Real>
-CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
+CameraData<Real> CompileCamera(const Camera& camera, int width, int height,
+                               const ScenePlacement& placement) {
   CameraData<Real> data{};
   const glm::dvec3 forward = Unit(camera.look_at - camera.eye);
   const glm::dvec3 right = Unit(CrossOf(forward, camera.up));
@@ -202,7 +229,8 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
   static_assert(static_cast<std::size_t>(kLastCameraModel) + 1 == std::variant_size_v<Projection>);
   data.model = static_cast<CameraModel>(camera.projection.index());
   const ProjectionKind& kind = KindOf(camera.projection);
-  const double number = ParameterOf(camera.projection);
+  double number = ParameterOf(camera.projection);
+  if (kind.unit == ProjectionUnit::kLength) number = placement.Length(number);
   const double step = PlaneStep(kind, number, height);
   if (kind.surface == ProjectionSurface::kSphere) {
     // A number of degrees spans the height, alike in all directions; else the picture spans all.
@@ -210,7 +238,7 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
     data.turns_x = static_cast<Real>(spans_all ? 4.0 / width : number / 90 / height);
     data.turns_y = static_cast<Real>(spans_all ? 2.0 / height : number / 90 / height);
   }
-  Store(camera.eye, data.eye);
+  Store(placement.Point(camera.eye), data.eye);
   Store(forward, data.forward);
   Store(right * step, data.right);
   Store(up * step, data.up);
@@ -221,9 +249,9 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height) {
 
 template struct CompiledScene<float>;
 template struct CompiledScene<double>;
-template CompiledScene<float> CompileScene(const Scene&);
-template CompiledScene<double> CompileScene(const Scene&);
-template CameraData<float> CompileCamera(const Camera&, int, int);
-template CameraData<double> CompileCamera(const Camera&, int, int);
+template CompiledScene<float> CompileScene(const Scene&, const ScenePlacement&);
+template CompiledScene<double> CompileScene(const Scene&, const ScenePlacement&);
+template CameraData<float> CompileCamera(const Camera&, int, int, const ScenePlacement&);
+template CameraData<double> CompileCamera(const Camera&, int, int, const ScenePlacement&);
 
 }  // namespace sheaf

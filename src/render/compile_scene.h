@@ -9,6 +9,7 @@
 #include "sheaf/scene.h"
 #include "simd/shading.h"
 #include "src/render/compile_geometry.h"
+#include "src/render/place_scene.h"
 #include "src/stream/frame_view.h"
 
 namespace sheaf {
@@ -29,11 +30,12 @@ struct CompiledScene {
 
 // Without the tree: objects.data.BuildTree.
 template <typename Real>
-CompiledScene<Real> CompileScene(const Scene& scene);
+CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement = {});
 
-// The camera for a picture of width x height pixels.
+// The camera for a picture of width x height pixels, placed as the scene is.
 template <typename Real>
-CameraData<Real> CompileCamera(const Camera& camera, int width, int height);
+CameraData<Real> CompileCamera(const Camera& camera, int width, int height,
+                               const ScenePlacement& placement = {});
 
 }  // namespace sheaf
 

@@ -13,6 +13,7 @@
 #include "src/core/running_target.h"
 #include "src/render/check_options.h"
 #include "src/render/compile_scene.h"
+#include "src/render/place_scene.h"
 #include "src/render/render_bands.h"
 #include "src/render/sample_pattern.h"
 #include "src/render/scalar_tile_renderer.h"
@@ -41,7 +42,8 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   }
   auto frame = std::make_unique<CompiledFrame<Real>>();
   CompiledScene<Real>& compiled = frame->scene;
-  compiled = CompileScene<Real>(scene);
+  const ScenePlacement placement = PlaceScene(scene, camera);
+  compiled = CompileScene<Real>(scene, placement);
   if (skips == Skips::kOff) {
     for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
   }
@@ -62,13 +64,14 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
                  compiled.lights,
                  frame->sample_x,
                  frame->sample_y,
-                 CompileCamera<Real>(camera, options.width, options.height),
+                 CompileCamera<Real>(camera, options.width, options.height, placement),
                  {compiled.background[0], compiled.background[1], compiled.background[2]},
                  options.max_depth,
                  options.width,
                  options.height,
                  static_cast<Real>(options.contrast.value_or(std::nan(""))),
-                 static_cast<Real>(options.min_throughput)};
+                 static_cast<Real>(options.min_throughput),
+                 static_cast<Real>(1 / placement.scale)};
   if (skips == Skips::kOff) {
     frame->view.tree.skips_boxes = frame->view.tree.node_count == 0;
   }

@@ -22,7 +22,7 @@ struct FirstHitLayers {
 template <typename Real>
 FirstHitLayers LayersOf(const FirstHit<Real>& first, const FrameView<Real>& frame) {
   if (first.primitive == kNoPrimitive) return {};
-  return {static_cast<float>(first.t), first.normal.template To<float>(),
+  return {static_cast<float>(first.t * frame.length_unit), first.normal.template To<float>(),
           first.albedo.template To<float>(),
           static_cast<float>(frame.object_of_primitive[first.primitive] + 1)};
 }

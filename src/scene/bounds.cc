@@ -2,18 +2,27 @@
 
 #include <glm/common.hpp>
 
-#include "src/scene/shapes.h"
-
 namespace sheaf {
+namespace {
+
+void Include(const Vec3d& point, std::optional<Bounds>& bounds) {
+  if (!bounds) bounds = Bounds{point, point};
+  bounds->min = glm::min(bounds->min, point);
+  bounds->max = glm::max(bounds->max, point);
+}
+
+}  // namespace
+
+std::optional<Bounds> BoundsOf(const Shape& shape) {
+  std::optional<Bounds> bounds;
+  ForEachExtreme(shape, [&](const Vec3d& point) { Include(point, bounds); });
+  return bounds;
+}
 
 std::optional<Bounds> BoundsOf(const Scene& scene) {
   std::optional<Bounds> bounds;
   for (const Object& object : scene.objects) {
-    ForEachExtreme(object.shape, [&](const Vec3d& point) {
-      if (!bounds) bounds = Bounds{point, point};
-      bounds->min = glm::min(bounds->min, point);
-      bounds->max = glm::max(bounds->max, point);
-    });
+    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(point, bounds); });
   }
   return bounds;
 }

@@ -5,12 +5,16 @@
 #include <optional>
 
 #include "sheaf/scene.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 
 struct Bounds {
   Vec3d min, max;
 };
+
+// The smallest box around a shape; nothing around a mesh without vertices.
+std::optional<Bounds> BoundsOf(const Shape& shape);
 
 // The smallest box around all objects; nothing where there are none.
 std::optional<Bounds> BoundsOf(const Scene& scene);

@@ -1,0 +1,80 @@
+#include "src/render/place_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <optional>
+
+#include "src/core/vec3.h"
+#include "src/scene/bounds.h"
+
+namespace sheaf {
+namespace {
+
+// The eye may be this many times as far from the origin as from what it sees nearest.
+constexpr double kMostDistances = 8;
+// The largest coordinate of a scene that is not scaled. Box tests hold to 2^39, and light needs the
+// squares of distances.
+constexpr double kLeastSize = 0x1p-20, kMostSize = 0x1p36;
+
+double DotOf(const Vec3d& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double LengthOf(const Vec3d& v) { return std::sqrt(DotOf(v, v)); }
+double LargestOf(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+// The place that a picture is seen from, and how far from there the nearest thing lies that it may
+// show: to its middle, and half its size.
+struct Viewpoint {
+  Vec3d place{0.0};
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+// Rays of an orthographic camera have no common eye: it is the point of the line of sight that is
+// nearest to the object.
+Vec3d PlaceFacing(const Camera& camera, const Vec3d& middle) {
+  if (!std::holds_alternative<Orthographic>(camera.projection)) return camera.eye;
+  const Vec3d forward = camera.look_at - camera.eye;
+  return camera.eye + forward * (DotOf(middle - camera.eye, forward) / DotOf(forward, forward));
+}
+
+void Approach(const Camera& camera, const Bounds& object, Viewpoint& view) {
+  const Vec3d middle = object.min + (object.max - object.min) * 0.5;
+  const Vec3d place = PlaceFacing(camera, middle);
+  const double distance = LengthOf(middle - place) + LengthOf(object.max - middle);
+  if (distance < view.distance) view = {place, distance};
+}
+
+// The place rounded to a power of two near the distance, so that short numbers stay short: what
+// touches in the user's coordinates still touches.
+Vec3d OriginAt(const Viewpoint& view) {
+  const double step = std::ldexp(1.0, std::ilogb(view.distance));
+  Vec3d origin;
+  for (int i = 0; i < 3; ++i) origin[i] = std::nearbyint(view.place[i] / step) * step;
+  return origin;
+}
+
+}  // namespace
+
+ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
+  ScenePlacement placement;
+  Viewpoint view;
+  std::optional<Bounds> all;
+  for (const Object& object : scene.objects) {
+    const std::optional<Bounds> bounds = BoundsOf(object.shape);
+    if (!bounds) continue;
+    Approach(camera, *bounds, view);
+    if (!all) all = bounds;
+    *all = {glm::min(all->min, bounds->min), glm::max(all->max, bounds->max)};
+  }
+  if (!(view.distance > 0) || !std::isfinite(view.distance)) return placement;
+  if (LargestOf(view.place) > kMostDistances * view.distance) placement.origin = OriginAt(view);
+  const double size =
+      std::max({LargestOf(all->min - placement.origin), LargestOf(all->max - placement.origin),
+                LargestOf(camera.eye - placement.origin)});
+  if (!(size >= kLeastSize && size <= kMostSize) && size > 0 && std::isfinite(size)) {
+    placement.scale = std::ldexp(1.0, -std::ilogb(size));
+  }
+  return placement;
+}
+
+}  // namespace sheaf
