@@ -138,8 +138,10 @@ HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence
   const bool may_stray = coherence != Coherence::kCoherent && !tree.skips_boxes;
   for (std::uint32_t begin = 0; begin < batch.count; begin += lanes * lanes) {
     const std::uint32_t end = std::min(batch.count, begin + lanes * lanes);
-    if (may_be_frustum && TraceAsFrustum(batch, begin)) continue;
-    if (may_be_sheet && TraceAsSheet(batch, begin, end)) continue;
+    // So few rays go on one by one anyway.
+    const bool has_company = end - begin > lanes / 4;
+    if (may_be_frustum && has_company && TraceAsFrustum(batch, begin)) continue;
+    if (may_be_sheet && has_company && TraceAsSheet(batch, begin, end)) continue;
     if (strays.count + lanes * lanes > StrayRays::kCapacity ||
         (strays.count > 0 && end - strays.first > StrayRays::kSpan)) {
       TraceStrays(batch, strays);
