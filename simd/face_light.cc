@@ -14,7 +14,7 @@ namespace sheaf::simd::HWY_NAMESPACE {
 template <typename Real>
 std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
                              const SurfaceView<Real>& surfaces, std::uint32_t count,
-                             std::uint32_t* faces) {
+                             std::uint32_t* faces, const IncidenceOutput<Real>& incidence) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
@@ -22,7 +22,7 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
     V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
       falloff = hn::Zero(d);
-    LoadIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
     // False for NaN: a light that lies on the point gives nothing.
     auto lanes = hn::And(LanesBelow(d, i, count), hn::Gt(n_dot_l, hn::Zero(d)));
     lanes = hn::And(lanes, HasLocalLight(d, material, surfaces, i));
@@ -38,6 +38,12 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
     facing += static_cast<std::uint32_t>(hn::CountTrue(d, lanes));
     const auto one = hn::Set(di, hn::TFromD<decltype(di)>{1});
     StoreIds(d, hn::IfThenElseZero(hn::RebindMask(di, lanes), one), faces + i);
+    if (hn::AllFalse(d, lanes)) continue;
+    hn::StoreU(lx, d, incidence.x + i);
+    hn::StoreU(ly, d, incidence.y + i);
+    hn::StoreU(lz, d, incidence.z + i);
+    hn::StoreU(n_dot_l, d, incidence.cosine + i);
+    hn::StoreU(falloff, d, incidence.falloff + i);
   }
   return facing;
 }

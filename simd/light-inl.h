@@ -18,8 +18,9 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 // The unit vector to the light, its cosine with the normal (0 where the light lies on the point)
 // and the denominator of its falloff: IncidenceOf in src/scalar/shade.h.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE void LoadIncidence(D d, const LightData<Real>& light, const SurfaceView<Real>& surfaces,
-                              std::uint32_t i, V& lx, V& ly, V& lz, V& n_dot_l, V& falloff) {
+HWY_INLINE void ComputeIncidence(D d, const LightData<Real>& light,
+                                 const SurfaceView<Real>& surfaces, std::uint32_t i, V& lx, V& ly,
+                                 V& lz, V& n_dot_l, V& falloff) {
   lx = hn::Set(d, light.vector[0]);
   ly = hn::Set(d, light.vector[1]);
   lz = hn::Set(d, light.vector[2]);

@@ -14,8 +14,9 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 template <typename Real>
 void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
-                     const SurfaceView<Real>& surfaces, const std::uint32_t* lit,
-                     std::uint32_t count, const ColourOutput<Real>& colours) {
+                     const SurfaceView<Real>& surfaces, const IncidenceView<Real>& incidence,
+                     const std::uint32_t* lit, std::uint32_t count,
+                     const ColourOutput<Real>& colours) {
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
   const V one = hn::Set(d, Real(1));
@@ -23,9 +24,13 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     const auto wanted = hn::Ne(LoadIds(d, lit + i), hn::Zero(IdLanes<Lanes<Real>>()));
     const auto lanes = hn::And(LanesBelow(d, i, count), hn::RebindMask(d, wanted));
     if (hn::AllFalse(d, lanes)) continue;
-    V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
-      falloff = hn::Zero(d);
-    LoadIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    V lx = hn::LoadU(d, incidence.x + i);
+    V ly = hn::LoadU(d, incidence.y + i);
+    V lz = hn::LoadU(d, incidence.z + i);
+    V n_dot_l = hn::LoadU(d, incidence.cosine + i);
+    V falloff = hn::LoadU(d, incidence.falloff + i);
+    // FaceLight is strict: what is fast stays so from the light's direction on.
+    if constexpr (kIsFast) ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
     V attenuation = hn::Div(one, falloff);
     if (light.is_spot) attenuation = hn::Mul(attenuation, ConeShare(d, light, lx, ly, lz));
     const V diffuse = hn::Mul(hn::Set(d, material.kd), n_dot_l);

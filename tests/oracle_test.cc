@@ -360,7 +360,8 @@ void MeasureHighlights(const Kernels<Real>& kernels, Measured& measured) {
     for (int axis = 0; axis < 3; ++axis) light.vector[axis] = to_light[axis], light.rgb[axis] = 1;
     SurfaceStream<Real> surfaces;
     ColourStream<Real> colours;
-    surfaces.Allocate(kRaysEach), colours.Allocate(kRaysEach);
+    IncidenceStream<Real> incidence;
+    surfaces.Allocate(kRaysEach), colours.Allocate(kRaysEach), incidence.Allocate(kRaysEach);
     AlignedArray<std::uint32_t> lit;
     lit.Allocate(StreamCapacity(kRaysEach));
     const auto out = surfaces.output();
@@ -379,8 +380,12 @@ void MeasureHighlights(const Kernels<Real>& kernels, Measured& measured) {
       const long double base = std::clamp(static_cast<long double>(cosine), 0.0L, 1.0L);
       exact.push_back(static_cast<double>(std::pow(base, static_cast<long double>(shininess))));
       lit[i] = 1;
+      const IncidenceOutput<Real> meets = incidence.output();
+      meets.x[i] = to_light.x, meets.y[i] = to_light.y, meets.z[i] = to_light.z;
+      meets.cosine[i] = 0, meets.falloff[i] = 1;  // the first is for diffuse light
     }
-    kernels.shade_light(light, material, surfaces.view(), lit.data(), kRaysEach, colours.output());
+    kernels.shade_light(light, material, surfaces.view(), incidence.view(), lit.data(), kRaysEach,
+                        colours.output());
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       measured.highlight.Add(std::abs(static_cast<double>(colours.view().r[i]) - exact[i]));
     }

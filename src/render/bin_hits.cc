@@ -12,6 +12,23 @@ std::uint32_t KeyOf(const PrimitiveInfo& info) {
   return 1 + kKindCount * info.material + static_cast<std::uint32_t>(info.kind());
 }
 
+HitBin BinOf(std::uint32_t key, const HitBatch& batch) {
+  return {(key - 1) / kKindCount, static_cast<PrimitiveKind>((key - 1) % kKindCount), batch};
+}
+
+// The first position from `i` on of another id than that at `i`; eight at a time, for vectors.
+std::uint32_t EndOfRun(const std::uint32_t* ids, std::uint32_t i, std::uint32_t count) {
+  constexpr std::uint32_t kStep = 8;
+  const std::uint32_t id = ids[i];
+  for (; i + kStep <= count; i += kStep) {
+    std::uint32_t differs = 0;
+    for (std::uint32_t k = 0; k < kStep; ++k) differs |= ids[i + k] ^ id;
+    if (differs != 0) break;
+  }
+  while (i < count && ids[i] == id) ++i;
+  return i;
+}
+
 }  // namespace
 
 void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
@@ -26,7 +43,7 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
   keys_.assign(1, 0);
   for (std::uint32_t i = 0; i < count;) {
     const std::uint32_t first = i, primitive = hit_primitives[i];
-    while (i < count && hit_primitives[i] == primitive) ++i;
+    i = EndOfRun(hit_primitives, i, count);
     Run run{first, i - first, primitive, 0, 0};
     if (primitive != kNoPrimitive) {
       const PrimitiveInfo& info = primitives[primitive];
@@ -39,16 +56,17 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
   }
 
   bins_.clear();
+  if (runs_.size() > 0 && counts_[runs_.front().key] == count) {
+    return BinAlike(runs_.front().key, hit_primitives, count);
+  }
   missed_rays_ = {ray_.data(), counts_[0]};
   std::uint32_t first = 0;
   std::sort(keys_.begin(), keys_.end());
   for (const std::uint32_t key : keys_) {
     const std::uint32_t size = counts_[key];
     if (key > 0) {
-      bins_.push_back(
-          {(key - 1) / kKindCount,
-           static_cast<PrimitiveKind>((key - 1) % kKindCount),
-           {ray_.data() + first, index_.data() + first, primitive_.data() + first, size}});
+      bins_.push_back(BinOf(
+          key, {ray_.data() + first, index_.data() + first, primitive_.data() + first, size}));
     }
     counts_[key] = first;
     first += size;
@@ -62,6 +80,17 @@ void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
   }
   // Only what was counted is cleared: most scenes have more materials than a stream meets.
   for (const std::uint32_t key : keys_) counts_[key] = 0;
+}
+
+// All rays met what has this key.
+void HitBinner::BinAlike(std::uint32_t key, const std::uint32_t* hit_primitives,
+                         std::uint32_t count) {
+  std::iota(ray_.data(), ray_.data() + count, 0u);
+  counts_[key] = 0;
+  missed_rays_ = {ray_.data(), key == 0 ? count : 0};
+  if (key == 0) return;
+  for (const Run& run : runs_) std::fill_n(index_.data() + run.first, run.size, run.index);
+  bins_.push_back(BinOf(key, {ray_.data(), index_.data(), hit_primitives, count}));
 }
 
 }  // namespace sheaf

@@ -24,7 +24,8 @@ class HitBinner {
  public:
   explicit HitBinner(std::size_t material_count) : counts_(kKindCount * material_count + 1) {}
 
-  // Valid until the next call. `primitives` tells a hit primitive's material and kind.
+  // Valid until the next call, and as long as `hit_primitives` are. `primitives` tells a hit
+  // primitive's material and kind.
   void Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
            std::span<const PrimitiveInfo> primitives);
 
@@ -36,6 +37,8 @@ class HitBinner {
   struct Run {
     std::uint32_t first, size, primitive, key, index;
   };
+
+  void BinAlike(std::uint32_t key, const std::uint32_t* hit_primitives, std::uint32_t count);
 
   std::vector<std::uint32_t> counts_;  // by key: see KeyOf; 0 for misses
   std::vector<std::uint32_t> keys_;    // that this stream met, ascending; 0 always

@@ -11,12 +11,13 @@ void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceV
                               std::uint32_t count, const ColourOutput<Real>& colours) {
   Reserve(count);
   for (const LightData<Real>& light : frame_.lights) {
-    const std::uint32_t facing = kernels_.face_light(light, material, surfaces, count, lit_.data());
+    const std::uint32_t facing =
+        kernels_.face_light(light, material, surfaces, count, lit_.data(), incidence_.output());
     clock_.Charge(Phase::kShade, count, count);
     if (facing == 0) continue;
     const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
     if (lit == 0) continue;
-    kernels_.shade_light(light, material, surfaces, lit_.data(), count, colours);
+    kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), count, colours);
     clock_.Charge(Phase::kShade, lit, count);
   }
 }
@@ -33,9 +34,11 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
                           occluded_.data());
   std::uint32_t lit = size;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    lit_[surface_of_ray_[i]] = 1 - occluded_[i];
-    lit -= occluded_[i];
+  for (std::uint32_t i = 0; i < size; ++i) lit -= occluded_[i];
+  if (size == count) {  // ray i is that of surface i
+    for (std::uint32_t i = 0; i < size; ++i) lit_[i] = 1 - occluded_[i];
+  } else {
+    for (std::uint32_t i = 0; i < size; ++i) lit_[surface_of_ray_[i]] = 1 - occluded_[i];
   }
   clock_.Charge(Phase::kShadow, size, size);
   return lit;
@@ -46,6 +49,7 @@ void LightShader<Real>::Reserve(std::uint32_t count) {
   if (count <= capacity_) return;
   capacity_ = std::max(count, 2 * capacity_);
   lit_.Allocate(StreamCapacity(capacity_));
+  incidence_.Allocate(capacity_);
   shadow_rays_.Allocate(capacity_);
   surface_of_ray_.Allocate(StreamCapacity(capacity_));
   occluded_.Allocate(StreamCapacity(capacity_));

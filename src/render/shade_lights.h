@@ -41,6 +41,7 @@ class LightShader {
 
   std::uint32_t capacity_ = 0;
   AlignedArray<std::uint32_t> lit_;  // by surface: 1 where the light in work reaches it
+  IncidenceStream<Real> incidence_;  // of the light in work
   RayStream<Real> shadow_rays_;
   AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
 };

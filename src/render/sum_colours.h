@@ -2,6 +2,7 @@
 #ifndef SHEAF_RENDER_SUM_COLOURS_H_
 #define SHEAF_RENDER_SUM_COLOURS_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -21,10 +22,16 @@ void ScatterColours(const ColourView<Real>& surfaces, const HitBatch& batch,
   }
 }
 
-// `colour` for the rays of a list.
+// `colour` for the rays of a list, which ascends, of `count` rays.
 template <typename Real>
-void FillColours(const Real (&colour)[3], std::span<const std::uint32_t> list,
+void FillColours(const Real (&colour)[3], std::span<const std::uint32_t> list, std::uint32_t count,
                  const ColourOutput<Real>& rays) {
+  if (list.size() == count) {
+    std::fill_n(rays.r, count, colour[0]);
+    std::fill_n(rays.g, count, colour[1]);
+    std::fill_n(rays.b, count, colour[2]);
+    return;
+  }
   for (const std::uint32_t ray : list) {
     rays.r[ray] = colour[0];
     rays.g[ray] = colour[1];

@@ -98,7 +98,7 @@ void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream
   clock_.Charge(Phase::kBin);
 
   const ColourOutput<Real> seen = colours.output();
-  FillColours(frame_.background, binner_.missed_rays(), seen);
+  FillColours(frame_.background, binner_.missed_rays(), batch.count, seen);
   next_reflected_.StartParents();
   next_refracted_.StartParents();
   for (const HitBin& bin : binner_.bins()) {
@@ -108,12 +108,13 @@ void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream
         FindSurfaces(frame_, kernels_, bin, batch.rays, hits_.view(), surfaces_);
     if (recorder) recorder->Record(bin, hits_.view(), surfaces);
     clock_.Charge(Phase::kSurface, count, count);
-    kernels_.shade_ambient(material, surfaces, count, surface_colours_.output());
+    // Where all rays met alike, surfaces stand in the order of rays.
+    const bool is_all = count == batch.count;
+    const ColourOutput<Real> shaded = is_all ? seen : surface_colours_.output();
+    kernels_.shade_ambient(material, surfaces, count, shaded);
     clock_.Charge(Phase::kShade, count, count);
-    if (material.needs & kNeedsLights) {
-      lights_.Shade(material, surfaces, count, surface_colours_.output());
-    }
-    ScatterColours(surface_colours_.view(), bin.batch, seen);
+    if (material.needs & kNeedsLights) lights_.Shade(material, surfaces, count, shaded);
+    if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, seen);
     clock_.Charge(Phase::kAccumulate);
     if (material.needs & kNeedsChildren) Spawn(batch.paths, material, surfaces, count);
   }

@@ -42,6 +42,8 @@ using HitStream = Stream<Real, HitFields>;
 template <typename Real>
 using SurfaceStream = Stream<Real, SurfaceFields>;
 template <typename Real>
+using IncidenceStream = Stream<Real, IncidenceFields>;
+template <typename Real>
 using ColourStream = Stream<Real, ColourFields>;
 
 }  // namespace sheaf
