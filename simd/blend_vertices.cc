@@ -27,8 +27,8 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
     const auto index = hn::IfThenElseZero(lanes, LoadIds(dn, batch.index + i));
     const std::uint32_t wanted = batch.count - i;
-    const IdPattern ray_pattern = PatternOf(dn, ray, batch.ray[i], wanted);
-    const IdPattern index_pattern = PatternOf(dn, index, batch.index[i], wanted);
+    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
+    const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(dn), wanted);
     const auto of_ray = [&](const Real* array) HWY_ATTR {
       return Widen(Fetch(dn, ray_pattern, array, batch.ray[i], ray));
     };

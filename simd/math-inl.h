@@ -106,16 +106,16 @@ HWY_INLINE hn::Vec<D> GatherAt(D d, const hn::TFromD<D>* HWY_RESTRICT array, V i
 // such rays hit, as one number.
 enum class IdPattern { kRun, kSame, kAny };
 
-// Of a vector of ids that begins with `first` and of which the first `wanted` lanes count.
-template <class D>
-HWY_INLINE IdPattern PatternOf(D d, hn::Vec<IdLanes<D>> ids, std::uint32_t first,
+// `ids` points at the ids of `lanes` lanes, of which the first `wanted` count.
+HWY_INLINE IdPattern PatternOf(const std::uint32_t* ids, std::uint32_t lanes,
                                std::uint32_t wanted) {
-  const IdLanes<D> di;
-  using Id = hn::TFromD<IdLanes<D>>;
-  if (wanted < LaneCount(d)) return IdPattern::kAny;
-  if (hn::AllTrue(di, hn::Eq(ids, hn::Set(di, Id{first})))) return IdPattern::kSame;
-  const bool is_run = hn::AllTrue(di, hn::Eq(ids, hn::Iota(di, Id{first})));
-  return is_run ? IdPattern::kRun : IdPattern::kAny;
+  if (wanted < lanes) return IdPattern::kAny;
+  std::uint32_t same = 1, run = 1;
+  for (std::uint32_t lane = 1; lane < lanes; ++lane) {
+    same &= ids[lane] == ids[0] ? 1u : 0u;
+    run &= ids[lane] == ids[0] + lane ? 1u : 0u;
+  }
+  return same ? IdPattern::kSame : run ? IdPattern::kRun : IdPattern::kAny;
 }
 
 template <class D, class V>

@@ -2,6 +2,7 @@
 #ifndef SHEAF_SIMD_SHADE_LIGHT_H_
 #define SHEAF_SIMD_SHADE_LIGHT_H_
 
+#include "simd/incidence.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 

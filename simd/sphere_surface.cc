@@ -80,8 +80,8 @@ HWY_INLINE void FetchHits(const SphereArrays<Real>& spheres, const RayView<Real>
   const auto ray = hn::IfThenElseZero(lanes, LoadIds(d, batch.ray + i));
   const auto index = hn::IfThenElseZero(lanes, LoadIds(d, batch.index + i));
   const std::uint32_t wanted = batch.count - i;
-  const IdPattern ray_pattern = PatternOf(d, ray, batch.ray[i], wanted);
-  const IdPattern index_pattern = PatternOf(d, index, batch.index[i], wanted);
+  const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(d), wanted);
+  const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(d), wanted);
   const auto of_ray = [&](const Real* array)
                           HWY_ATTR { return Fetch(d, ray_pattern, array, batch.ray[i], ray); };
   const auto of_primitive = [&](const Real* array) HWY_ATTR {

@@ -100,18 +100,6 @@ struct SurfaceFields {
       &SurfaceFields::tint_r, &SurfaceFields::tint_g, &SurfaceFields::tint_b);
 };
 
-// How a light meets surfaces.
-template <typename Real, template <typename> class Field>
-struct IncidenceFields {
-  Field<Real> x, y, z;  // unit vector to the light
-  Field<Real> cosine;   // of it and the normal; 0 where the light lies on the point
-  Field<Real> falloff;  // what the light is divided by
-
-  static constexpr auto kFields =
-      std::make_tuple(&IncidenceFields::x, &IncidenceFields::y, &IncidenceFields::z,
-                      &IncidenceFields::cosine, &IncidenceFields::falloff);
-};
-
 // Linear RGB, one an element.
 template <typename Real, template <typename> class Field>
 struct ColourFields {
@@ -137,10 +125,6 @@ template <typename Real>
 using SurfaceView = SurfaceFields<Real, ConstField>;
 template <typename Real>
 using SurfaceOutput = SurfaceFields<Real, MutableField>;
-template <typename Real>
-using IncidenceView = IncidenceFields<Real, ConstField>;
-template <typename Real>
-using IncidenceOutput = IncidenceFields<Real, MutableField>;
 template <typename Real>
 using ColourView = ColourFields<Real, ConstField>;
 template <typename Real>

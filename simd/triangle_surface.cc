@@ -28,8 +28,8 @@ void TriangleSurfacesLanes(const GeometryView<Real>& geometry, const RayView<Rea
     const auto ray = hn::IfThenElseZero(lanes, LoadIds(dn, batch.ray + i));
     const auto index = hn::IfThenElseZero(lanes, LoadIds(dn, batch.index + i));
     const std::uint32_t wanted = batch.count - i;
-    const IdPattern ray_pattern = PatternOf(dn, ray, batch.ray[i], wanted);
-    const IdPattern index_pattern = PatternOf(dn, index, batch.index[i], wanted);
+    const IdPattern ray_pattern = PatternOf(batch.ray + i, LaneCount(dn), wanted);
+    const IdPattern index_pattern = PatternOf(batch.index + i, LaneCount(dn), wanted);
     const auto of_ray = [&](const Real* array)
                             HWY_ATTR { return Fetch(dn, ray_pattern, array, batch.ray[i], ray); };
     const auto of_primitive = [&](const Real* array) HWY_ATTR {

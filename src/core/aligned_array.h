@@ -36,7 +36,14 @@ class AlignedArray {
     size_ = size;
   }
 
+  // Allocates where there is less room, then for at least twice as much as before, so that
+  // allocations are few while sizes grow.
+  void Reserve(std::size_t size) {
+    if (size > size_) Allocate(size > 2 * size_ ? size : 2 * size_);
+  }
+
   std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(T); }
   T* data() { return data_.get(); }
   const T* data() const { return data_.get(); }
   T& operator[](std::size_t i) { return data_.get()[i]; }

@@ -8,10 +8,7 @@ namespace sheaf {
 template <typename Real>
 void SampleMeans<Real>::Start(const ColourView<Real>& sample, std::uint32_t count) {
   count_ = count;
-  if (count > capacity_) {
-    capacity_ = count;
-    sums_.Allocate(count);
-  }
+  sums_.Reserve(count);
   const auto sums = sums_.output();
   ForEachField(sums, sample,
                [&](Real* sum, const Real* channel) { std::copy_n(channel, count, sum); });

@@ -25,10 +25,11 @@ class SampleMeans {
   void DivideAt(std::span<const std::uint32_t> positions, int samples);
 
   ColourView<Real> view() const { return sums_.view(); }
+  std::size_t bytes() const { return sums_.bytes(); }
 
  private:
   ColourStream<Real> sums_;
-  std::uint32_t count_ = 0, capacity_ = 0;
+  std::uint32_t count_ = 0;
 };
 
 }  // namespace sheaf

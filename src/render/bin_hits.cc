@@ -33,11 +33,7 @@ std::uint32_t EndOfRun(const std::uint32_t* ids, std::uint32_t i, std::uint32_t 
 
 void HitBinner::Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
                     std::span<const PrimitiveInfo> primitives) {
-  if (ray_.size() < StreamCapacity(count)) {
-    ray_.Allocate(StreamCapacity(count));
-    index_.Allocate(StreamCapacity(count));
-    primitive_.Allocate(StreamCapacity(count));
-  }
+  for (auto* array : {&ray_, &index_, &primitive_}) array->Reserve(StreamCapacity(count));
   // Neighbouring rays mostly hit the same primitive, so that a run of them costs one look-up.
   runs_.clear();
   keys_.assign(1, 0);

@@ -29,6 +29,10 @@ class HitBinner {
   void Bin(const std::uint32_t* hit_primitives, std::uint32_t count,
            std::span<const PrimitiveInfo> primitives);
 
+  std::size_t bytes() const {
+    return ray_.bytes() + index_.bytes() + primitive_.bytes() + runs_.capacity() * sizeof(Run);
+  }
+
   std::span<const HitBin> bins() const { return bins_; }
   std::span<const std::uint32_t> missed_rays() const { return missed_rays_; }
 

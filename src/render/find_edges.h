@@ -20,6 +20,11 @@ class EdgeFinder {
   void Find(const PixelOrder<Real>& order, const PixelRect& tile,
             std::span<const FirstHit<Real>> hits, Real contrast);
 
+  std::size_t bytes() const {
+    return pixels_.bytes() + positions_.capacity() * sizeof(std::uint32_t) +
+           is_edge_.capacity() / 8;
+  }
+
   const PixelList<Real>& pixels() const { return pixels_; }
   // Of each of pixels() in the order that they were found in.
   std::span<const std::uint32_t> positions() const { return positions_; }

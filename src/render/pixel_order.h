@@ -18,6 +18,7 @@ struct PixelList {
 
   // Makes room for `n` pixels; what the list held is lost where there was less.
   void Reserve(std::uint32_t n);
+  std::size_t bytes() const { return x.bytes() + y.bytes(); }
 };
 
 // All pixels of a rectangle in Morton order, so that any power of two of consecutive rays is a
@@ -27,6 +28,10 @@ class PixelOrder {
  public:
   // Cheap where the last rectangle had the same size.
   void Arrange(const PixelRect& area);
+
+  std::size_t bytes() const {
+    return pixels_.bytes() + position_.capacity() * sizeof(std::uint32_t);
+  }
 
   const PixelRect& area() const { return area_; }
   const PixelList<Real>& pixels() const { return pixels_; }

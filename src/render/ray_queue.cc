@@ -1,6 +1,5 @@
 #include "src/render/ray_queue.h"
 
-#include <algorithm>
 #include <type_traits>
 
 namespace sheaf {
@@ -35,16 +34,6 @@ void ParentOrder<Real>::Apply(const RayOutput<Real>& rays, const PathOutput<Real
   };
   ForEachField(rays, permute);
   ForEachField(paths, permute);
-}
-
-template <typename Real>
-void RayQueue<Real>::Reset(std::uint32_t n) {
-  count_ = 0;
-  if (n <= capacity_) return;
-  // Doubling keeps the number of allocations small while depths grow.
-  capacity_ = std::max(n, 2 * capacity_);
-  rays_.Allocate(capacity_);
-  paths_.Allocate(capacity_);
 }
 
 template <typename Real>

@@ -24,23 +24,17 @@ class PrimaryRays {
  public:
   // Room for `n` rays, to be written by the caller.
   RayOutput<Real> Start(std::uint32_t n) {
-    if (n > capacity_) {
-      capacity_ = n;
-      rays_.Allocate(n);
-    }
+    rays_.Reserve(n, ~FieldBit(&RayView<Real>::source));
     count_ = n;
     return rays_.output();
   }
 
-  RayBatch<Real> batch() const {
-    RayView<Real> rays = rays_.view();
-    rays.source = nullptr;
-    return {rays, {}, count_};
-  }
+  RayBatch<Real> batch() const { return {rays_.view(), {}, count_}; }
+  std::size_t bytes() const { return rays_.bytes(); }
 
  private:
   RayStream<Real> rays_;
-  std::uint32_t count_ = 0, capacity_ = 0;
+  std::uint32_t count_ = 0;
 };
 
 // Brings rays into the order of their parents, no two of which share one.
@@ -50,6 +44,10 @@ class ParentOrder {
   // `parent_count` bounds paths.parent.
   void Apply(const RayOutput<Real>& rays, const PathOutput<Real>& paths, std::uint32_t count,
              std::uint32_t parent_count);
+  std::size_t bytes() const {
+    const std::size_t ids = ray_of_parent_.capacity() + order_.capacity() + ids_.capacity();
+    return ids * sizeof(std::uint32_t) + numbers_.capacity() * sizeof(Real);
+  }
 
  private:
   // Kept from call to call.
@@ -62,14 +60,23 @@ class ParentOrder {
 template <typename Real>
 class RayQueue {
  public:
-  // Room for `n` rays; empties the queue.
-  void Reset(std::uint32_t n);
+  // Empties the queue. At most `n` rays will come.
+  void Reset(std::uint32_t n) {
+    count_ = 0;
+    most_ = n;
+  }
+  // Makes room for them: before the first is written, so that scenes without such rays have no
+  // memory for them.
+  void MakeRoom() {
+    rays_.Reserve(most_);
+    paths_.Reserve(most_);
+  }
 
   void StartParents() {
     first_ = count_;
     bins_ = 0;
   }
-  // Where the next rays go.
+  // Where the next rays go; null pointers where there is no room.
   RayOutput<Real> next_rays() { return rays_.output(count_); }
   PathOutput<Real> next_paths() { return paths_.output(count_); }
   // A bin's rays are written there, all but their pixels, in the order of their parents.
@@ -81,12 +88,13 @@ class RayQueue {
   void FinishParents(const RayBatch<Real>& parents, ParentOrder<Real>& order);
 
   std::uint32_t count() const { return count_; }
+  std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }
   RayBatch<Real> batch() const { return {rays_.view(), paths_.view(), count_}; }
 
  private:
   RayStream<Real> rays_;
   PathStream<Real> paths_;
-  std::uint32_t count_ = 0, capacity_ = 0;
+  std::uint32_t count_ = 0, most_ = 0;
   std::uint32_t first_ = 0;  // ray of the parents in work
   int bins_ = 0;             // of the parents in work that have rays
 };

@@ -29,6 +29,8 @@ class FirstHitRecorder {
   void Record(const HitBin& bin, const HitView<Real>& hits, const SurfaceView<Real>& surfaces);
   void RecordColours(const ColourView<Real>& sample);
 
+  std::size_t bytes() const { return hits_.capacity() * sizeof(FirstHit<Real>); }
+
   // By pixel.
   std::span<const FirstHit<Real>> hits() const { return hits_; }
 

@@ -90,6 +90,7 @@ void RenderTiles(const Workers& workers, const PixelRect& band, int tile_size, F
 
 void AddCounts(const TileWorker& worker, RenderStats& stats) {
   stats.rays += worker.rays();
+  stats.buffer_bytes += worker.buffer_bytes();
   for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
     const Phase phase = static_cast<Phase>(i);
     stats.phase_seconds[i] += worker.clock().seconds(phase);

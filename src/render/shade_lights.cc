@@ -1,7 +1,5 @@
 #include "src/render/shade_lights.h"
 
-#include <algorithm>
-
 #include "simd/query.h"
 
 namespace sheaf {
@@ -9,7 +7,9 @@ namespace sheaf {
 template <typename Real>
 void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
                               std::uint32_t count, const ColourOutput<Real>& colours) {
-  Reserve(count);
+  if (frame_.lights.empty()) return;
+  lit_.Reserve(StreamCapacity(count));
+  incidence_.Reserve(count);
   for (const LightData<Real>& light : frame_.lights) {
     const std::uint32_t facing =
         kernels_.face_light(light, material, surfaces, count, lit_.data(), incidence_.output());
@@ -26,6 +26,9 @@ template <typename Real>
 std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
                                              const SurfaceView<Real>& surfaces,
                                              std::uint32_t count) {
+  shadow_rays_.Reserve(count);
+  surface_of_ray_.Reserve(StreamCapacity(count));
+  occluded_.Reserve(StreamCapacity(count));
   const std::uint32_t size = kernels_.generate_shadow(
       light, surfaces, lit_.data(), count, shadow_rays_.output(), surface_of_ray_.data());
   rays_.shadow += size;
@@ -42,17 +45,6 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   }
   clock_.Charge(Phase::kShadow, size, size);
   return lit;
-}
-
-template <typename Real>
-void LightShader<Real>::Reserve(std::uint32_t count) {
-  if (count <= capacity_) return;
-  capacity_ = std::max(count, 2 * capacity_);
-  lit_.Allocate(StreamCapacity(capacity_));
-  incidence_.Allocate(capacity_);
-  shadow_rays_.Allocate(capacity_);
-  surface_of_ray_.Allocate(StreamCapacity(capacity_));
-  occluded_.Allocate(StreamCapacity(capacity_));
 }
 
 template class LightShader<float>;

@@ -27,19 +27,21 @@ class LightShader {
   // Adds to colours[0, count) what each light gives the surfaces that it reaches.
   void Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
              std::uint32_t count, const ColourOutput<Real>& colours);
+  std::size_t bytes() const {
+    return lit_.bytes() + incidence_.bytes() + shadow_rays_.bytes() + surface_of_ray_.bytes() +
+           occluded_.bytes();
+  }
 
  private:
   // Returns how many surfaces the light reaches.
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
-  void Reserve(std::uint32_t count);
 
   const FrameView<Real>& frame_;
   const Kernels<Real>& kernels_;
   RayCounts& rays_;
   PhaseClock& clock_;
 
-  std::uint32_t capacity_ = 0;
   AlignedArray<std::uint32_t> lit_;  // by surface: 1 where the light in work reaches it
   IncidenceStream<Real> incidence_;  // of the light in work
   RayStream<Real> shadow_rays_;

@@ -1,6 +1,7 @@
 #include "src/render/tile_renderer.h"
 
 #include <algorithm>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -19,6 +20,13 @@ Kernels<Real> KernelsFor(const RenderOptions& options) {
     if (options.precision == Precision::kFast) return FastKernels(options.target.id());
   }
   return StrictKernels<Real>(options.target.id());
+}
+
+template <typename Real>
+std::uint32_t NeedsOfAny(std::span<const MaterialData<Real>> materials) {
+  std::uint32_t needs = 0;
+  for (const MaterialData<Real>& material : materials) needs |= material.needs;
+  return needs;
 }
 
 }  // namespace
@@ -65,6 +73,7 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
     for (const RayQueue<Real>* queue : {&reflected_, &refracted_}) {
       if (IsStopped()) return;
       const RayBatch<Real> batch = queue->batch();
+      ray_colours_.Reserve(batch.count);
       TraceAndShade(batch, ray_colours_, nullptr);
       AccumulateColours(ray_colours_.view(), batch.paths, batch.count, sample_.output());
       clock_.Charge(Phase::kAccumulate);
@@ -75,10 +84,7 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
 // The pixels' first rays of a sample.
 template <typename Real>
 void TileRenderer<Real>::GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample) {
-  if (pixels.count > sample_capacity_) {
-    sample_capacity_ = pixels.count;
-    sample_.Allocate(pixels.count);
-  }
+  sample_.Reserve(pixels.count);
   kernels_.generate_primary(frame_.camera, pixels.x.data(), pixels.y.data(),
                             frame_.sample_x[sample], frame_.sample_y[sample], pixels.count,
                             primary_.Start(pixels.count));
@@ -90,7 +96,7 @@ template <typename Real>
 void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
                                        FirstHitRecorder<Real>* recorder) {
   if (batch.count == 0) return;
-  Reserve(batch.count);
+  hits_.Reserve(batch.count);
   kernels_.trace_closest(frame_.tree, batch.rays, {}, batch.count, Coherence::kUnknown,
                          hits_.output());
   clock_.Charge(Phase::kTrace, batch.count, batch.count);
@@ -104,12 +110,14 @@ void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream
   for (const HitBin& bin : binner_.bins()) {
     const MaterialData<Real>& material = frame_.materials[bin.material];
     const std::uint32_t count = bin.batch.count;
+    surfaces_.Reserve(batch.count, surface_fields_);
     const SurfaceView<Real> surfaces =
         FindSurfaces(frame_, kernels_, bin, batch.rays, hits_.view(), surfaces_);
     if (recorder) recorder->Record(bin, hits_.view(), surfaces);
     clock_.Charge(Phase::kSurface, count, count);
     // Where all rays met alike, surfaces stand in the order of rays.
     const bool is_all = count == batch.count;
+    if (!is_all) surface_colours_.Reserve(batch.count);
     const ColourOutput<Real> shaded = is_all ? seen : surface_colours_.output();
     kernels_.shade_ambient(material, surfaces, count, shaded);
     clock_.Charge(Phase::kShade, count, count);
@@ -126,6 +134,8 @@ void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream
 template <typename Real>
 void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t count) {
+  next_reflected_.MakeRoom();
+  if (material.needs & kNeedsTransmission) next_refracted_.MakeRoom();
   const SpawnCounts spawned = kernels_.spawn_rays(
       material, surfaces, count, parents, frame_.min_throughput, next_reflected_.next_rays(),
       next_reflected_.next_paths(), next_refracted_.next_rays(), next_refracted_.next_paths());
@@ -183,13 +193,13 @@ void TileRenderer<Real>::WritePixels(const PixelRect& tile, int film_x, int film
 }
 
 template <typename Real>
-void TileRenderer<Real>::Reserve(std::uint32_t count) {
-  if (count <= reserved_) return;
-  reserved_ = std::max(count, 2 * reserved_);
-  hits_.Allocate(reserved_);
-  surfaces_.Allocate(reserved_);
-  ray_colours_.Allocate(reserved_);
-  surface_colours_.Allocate(reserved_);
+std::size_t TileRenderer<Real>::buffer_bytes() const {
+  std::size_t sum = 0;
+  const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
+  add(binner_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
+  add(reflected_, refracted_, next_reflected_, next_refracted_, parent_order_);
+  add(hits_, surfaces_, ray_colours_, surface_colours_);
+  return sum;
 }
 
 template <typename Real>
@@ -204,6 +214,7 @@ TileRenderer<Real>::TileRenderer(const FrameView<Real>& frame, const Kernels<Rea
       frame_(frame),
       kernels_(kernels),
       stop_(stop),
+      surface_fields_(SurfaceFieldsFor<Real>(NeedsOfAny(frame.materials))),
       binner_(frame.materials.size()),
       lights_(frame, kernels_, rays_, clock_),
       first_hits_(frame, options.layers) {}

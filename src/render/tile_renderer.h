@@ -33,6 +33,7 @@ class TileRenderer : public TileWorker {
                const std::atomic<bool>& stop);
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) override;
+  std::size_t buffer_bytes() const override;
 
  private:
   TileRenderer(const FrameView<Real>& frame, const Kernels<Real>& kernels,
@@ -50,18 +51,17 @@ class TileRenderer : public TileWorker {
   void RefineEdges(const PixelRect& tile);
   void RefineAll();
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
-  void Reserve(std::uint32_t count);
   bool IsStopped() const { return stop_.load(std::memory_order_relaxed); }
 
   const FrameView<Real>& frame_;
   const Kernels<Real> kernels_;
   const std::atomic<bool>& stop_;
+  const std::uint32_t surface_fields_;  // that the frame's materials read
   HitBinner binner_;
   LightShader<Real> lights_;
 
-  PixelOrder<Real> order_;     // of the tile, or of it and its neighbours
-  ColourStream<Real> sample_;  // by pixel of the list that is traced
-  std::uint32_t sample_capacity_ = 0;
+  PixelOrder<Real> order_;             // of the tile, or of it and its neighbours
+  ColourStream<Real> sample_;          // by pixel of the list that is traced
   SampleMeans<Real> means_;            // by ordered pixel, where there are several samples
   FirstHitRecorder<Real> first_hits_;  // by ordered pixel
   EdgeFinder<Real> edges_;
@@ -71,7 +71,6 @@ class TileRenderer : public TileWorker {
   RayQueue<Real> reflected_, refracted_, next_reflected_, next_refracted_;
   ParentOrder<Real> parent_order_;
 
-  std::uint32_t reserved_ = 0;  // rays that the streams below have room for
   HitStream<Real> hits_;
   SurfaceStream<Real> surfaces_;
   ColourStream<Real> ray_colours_, surface_colours_;

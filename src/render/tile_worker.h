@@ -2,6 +2,8 @@
 #ifndef SHEAF_RENDER_TILE_WORKER_H_
 #define SHEAF_RENDER_TILE_WORKER_H_
 
+#include <cstddef>
+
 #include "sheaf/film.h"
 #include "sheaf/stats.h"
 #include "src/render/phase_clock.h"
@@ -15,6 +17,9 @@ class TileWorker {
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).
   virtual void Render(const PixelRect& tile, int film_x, int film_y, Film& film) = 0;
+
+  // What its buffers take, in bytes.
+  virtual std::size_t buffer_bytes() const { return 0; }
 
   const RayCounts& rays() const { return rays_; }
   const PhaseClock& clock() const { return clock_; }

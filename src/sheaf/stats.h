@@ -65,6 +65,9 @@ struct RenderStats {
   // RenderOptions::timing asks for it.
   double phase_seconds[static_cast<int>(Phase::kCount)] = {};
   LaneUse lane_use[static_cast<int>(Phase::kCount)] = {};
+  // Of all threads, for the tiles that they worked on: they follow the scene
+  // (docs/memory-layout.md). Not of the baseline, nor the film.
+  std::uint64_t buffer_bytes = 0;
   int threads = 0;     // that took part
   std::string target;  // what ran: "scalar" or a SIMD target's name
   // A quad is two triangles.

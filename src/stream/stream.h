@@ -2,10 +2,29 @@
 #ifndef SHEAF_STREAM_STREAM_H_
 #define SHEAF_STREAM_STREAM_H_
 
+#include <cstdint>
+#include <tuple>
+#include <type_traits>
+
+#include "simd/incidence.h"
 #include "simd/streams.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf {
+
+// The bit of a field by its place in the list of its stream, for Stream::Reserve.
+template <typename Fields, typename Member>
+constexpr std::uint32_t FieldBit(Member Fields::*field) {
+  std::uint32_t bit = 1, found = 0;
+  const auto compare = [&](auto member) {
+    if constexpr (std::is_same_v<decltype(member), Member Fields::*>) {
+      if (member == field) found = bit;
+    }
+    bit <<= 1;
+  };
+  std::apply([&](auto... member) { (compare(member), ...); }, Fields::kFields);
+  return found;
+}
 
 // `Fields` is one of the field lists of streams.h: Stream<float, RayFields> owns what
 // RayView<float> shows.
@@ -16,16 +35,31 @@ class Stream {
   void Allocate(std::uint32_t n) {
     ForEachField(arrays_, [&](auto& field) { field.Allocate(StreamCapacity(n)); });
   }
+  // The same, only where there is less room, and for those fields alone whose bits are set. What
+  // was never made room for is a null pointer.
+  void Reserve(std::uint32_t n, std::uint32_t fields = ~0u) {
+    ForEachField(arrays_, [&, bit = 1u](auto& field) mutable {
+      if (fields & bit) field.Reserve(StreamCapacity(n));
+      bit <<= 1;
+    });
+  }
+
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    ForEachField(arrays_, [&](const auto& field) { sum += field.bytes(); });
+    return sum;
+  }
 
   Fields<Real, ConstField> view() const {
     Fields<Real, ConstField> view;
     ForEachField(view, arrays_, [](auto& to, auto& from) { to = from.data(); });
     return view;
   }
-  // The elements from `first` on; `first` + count stays within the n of Allocate.
+  // The elements from `first` on; `first` + count stays within the n of Allocate or Reserve.
   Fields<Real, MutableField> output(std::uint32_t first = 0) {
     Fields<Real, MutableField> view;
-    ForEachField(view, arrays_, [&](auto& to, auto& from) { to = from.data() + first; });
+    ForEachField(view, arrays_,
+                 [&](auto& to, auto& from) { to = from.data() ? from.data() + first : nullptr; });
     return view;
   }
 
