@@ -19,7 +19,7 @@ constexpr std::size_t kBlock = 128 << 10;  // bytes that are compressed at once
 constexpr std::size_t kShortest = 4, kLongest = 258;
 constexpr int kHashBits = 12;
 // Of a longer match only the places of its two ends are remembered, so many at each.
-constexpr std::size_t kRemembered = 16;
+constexpr std::size_t kRemembered = 4;
 
 // A literal is its byte. A match has kMatch, its length less 3 from bit 16 on, its distance less 1.
 constexpr std::uint32_t kMatch = 1u << 31;
@@ -100,20 +100,28 @@ std::vector<Symbol> DescribeLengths(std::span<const std::uint8_t> lengths) {
   return symbols;
 }
 
-// Adler's sums (RFC 1950, section 8.2) of a piece that is short enough for 32 bits.
+// Adler's sums (RFC 1950, section 8.2). The second grows by every first: a sum of the bytes by
+// weight, in pieces that 32 bits hold, of products of 16 bits, which vectors take.
+constexpr std::size_t kPiece = 2048;
+constexpr auto kWeights = [] {
+  std::array<std::int16_t, kPiece> weights = {};
+  for (std::size_t i = 0; i < kPiece; ++i) weights[i] = static_cast<std::int16_t>(kPiece - i);
+  return weights;
+}();
+
 void AddToSums(const std::uint8_t* bytes, std::size_t size, std::uint32_t& a, std::uint32_t& b) {
-  constexpr std::size_t kPiece = 2048;
   constexpr std::uint32_t kPrime = 65521;
-  for (; size > 0;) {
+  while (size > 0) {
     const std::size_t piece = std::min(kPiece, size);
-    // b grows by every a: a weighted sum of the bytes, which vectors can take.
-    std::uint32_t sum = 0, weighted = 0;
-    for (std::uint32_t i = 0; i < piece; ++i) {
-      sum += bytes[i];
-      weighted += bytes[i] * (static_cast<std::uint32_t>(piece) - i);
+    const std::int16_t* const weights = kWeights.data() + (kPiece - piece);
+    std::int32_t sum = 0, weighted = 0;
+    for (std::size_t i = 0; i < piece; ++i) {
+      const std::int16_t byte = bytes[i];
+      sum += byte;
+      weighted += byte * weights[i];
     }
-    b = (b + static_cast<std::uint32_t>(piece) * a + weighted % kPrime) % kPrime;
-    a = (a + sum) % kPrime;
+    b = (b + static_cast<std::uint32_t>(piece) * a + static_cast<std::uint32_t>(weighted)) % kPrime;
+    a = (a + static_cast<std::uint32_t>(sum)) % kPrime;
     bytes += piece;
     size -= piece;
   }
