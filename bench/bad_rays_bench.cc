@@ -69,9 +69,11 @@ void TraceRays(benchmark::State& state, const Geometry& geometry, const RayBatch
   for (auto _ : state) {
     if (query == Query::kClosest) {
       TraceClosest(geometry, ArraysOf(batch.view()), batch.count,
-                   {.t = t.data(), .primitive = primitive.data()}, options);
+                   {.t = t.data(), .primitive = primitive.data()}, options)
+          .value();
     } else {
-      TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, primitive.data(), options);
+      TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, primitive.data(), options)
+          .value();
     }
     benchmark::DoNotOptimize(primitive.data());
   }

@@ -64,9 +64,11 @@ void TraceSheaf(const Geometry& geometry, const RayBatch& batch, Query query,
                   .primitive = answers.primitive.data(),
                   .u = answers.u.data(),
                   .v = answers.v.data()},
-                 options);
+                 options)
+        .value();
   } else {
-    TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, answers.primitive.data(), options);
+    TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, answers.primitive.data(), options)
+        .value();
   }
 }
 

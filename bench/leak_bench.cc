@@ -148,9 +148,10 @@ void CountSheaf(const Geometry& geometry, Target target, const RayBatch& batch,
   std::vector<float> t(batch.count);
   std::vector<std::uint32_t> primitive(batch.count), occluded(batch.count);
   TraceClosest(geometry, ArraysOf(batch.view()), batch.count,
-               {.t = t.data(), .primitive = primitive.data()}, options);
+               {.t = t.data(), .primitive = primitive.data()}, options)
+      .value();
   options.interval = IntervalOf(AroundTarget());
-  TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, occluded.data(), options);
+  TraceOccluded(geometry, ArraysOf(batch.view()), batch.count, occluded.data(), options).value();
   for (std::uint32_t i = 0; i < batch.count; ++i) {
     leaks.closest += IsLeak(primitive[i], t[i]);
     leaks.occluded += occluded[i] == 0;

@@ -24,7 +24,8 @@ int main() {
   }
   const sheaf::RayArrays rays = {zero.data(), zero.data(), zero.data(),
                                  x.data(),    y.data(),    z.data()};
-  sheaf::TraceClosest(geometry.value(), rays, kCount, {.t = t.data(), .object = object.data()});
+  sheaf::TraceClosest(geometry.value(), rays, kCount, {.t = t.data(), .object = object.data()})
+      .value();
 
   std::uint32_t hits[2] = {0, 0};
   for (const std::uint32_t id : object) hits[id < 2 ? id : 0] += id < 2 ? 1 : 0;

@@ -15,9 +15,10 @@ inline constexpr std::uint32_t kNoPrimitive = 0x7fffffffu;
 inline constexpr std::uint32_t kInsideBit = 0x80000000u;
 
 // A hit at t counts where t_min <= t <= t_max and t is finite. By default t_min is the smallest
-// positive number, so that a hit at exactly 0 does not count, and t_max the largest finite one.
+// normal number, so that a hit at 0 does not count, whether or not the host flushes denormals to 0;
+// and t_max is the largest finite one.
 template <typename Real>
-inline constexpr Real kDefaultTMin = std::numeric_limits<Real>::denorm_min();
+inline constexpr Real kDefaultTMin = std::numeric_limits<Real>::min();
 template <typename Real>
 inline constexpr Real kDefaultTMax = std::numeric_limits<Real>::max();
 

@@ -13,6 +13,9 @@
 namespace sheaf {
 namespace {
 
+// Threads that the tests ask for run, on any number of cores.
+const oneapi::tbb::global_control kThreads(oneapi::tbb::global_control::max_allowed_parallelism, 5);
+
 // The film that RenderRows hands over, checked for the heights of its bands.
 Film RenderInBands(const Scene& scene, const Camera& camera, const RenderOptions& options,
                    int band_height, RenderStats& stats) {

@@ -1,5 +1,6 @@
 // The tree: sound over every scene, however degenerate; the same on any number of threads.
 #include <doctest/doctest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,9 @@
 
 namespace sheaf {
 namespace {
+
+// Threads that the tests ask for run, on any number of cores.
+const oneapi::tbb::global_control kThreads(oneapi::tbb::global_control::max_allowed_parallelism, 4);
 
 // Primitives in exactly as much memory as they take.
 template <typename Real>

@@ -233,8 +233,9 @@ void CheckTraces(const Model& model, const std::vector<scalar::Ray<float>>& from
   TraceClosest(geometry, rays.view(), rays.count,
                {ask(0, t.get()), ask(1, primitive.get()), ask(2, object.get()), ask(3, u.get()),
                 ask(4, v.get())},
-               options);
-  TraceOccluded(geometry, rays.view(), rays.count, occluded.get(), options);
+               options)
+      .value();
+  TraceOccluded(geometry, rays.view(), rays.count, occluded.get(), options).value();
   std::uint32_t wrong = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     const scalar::Hit<float> want = scalar::TraceClosest(view, from[i]);
@@ -286,21 +287,21 @@ TEST_CASE("one interval for all, no sources, no geometry") {
   inside.origin_y = y;
   float t[2];
   std::uint32_t primitive[2], occluded[2];
-  TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive});
+  TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive}).value();
   CHECK(t[0] == 1);
   CHECK(t[1] == 3);
   CHECK(primitive[0] == 1);
   CHECK(primitive[1] == 0);
   const TraceOptions near = {.interval = {.all_t_max = 2}};
-  TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive}, near);
-  TraceOccluded(built.value(), inside, 2, occluded, near);
+  TraceClosest(built.value(), inside, 2, {.t = t, .primitive = primitive}, near).value();
+  TraceOccluded(built.value(), inside, 2, occluded, near).value();
   CHECK(t[0] == 1);
   CHECK(t[1] == 2);
   CHECK(primitive[1] == kNoPrimitive);
   CHECK(occluded[0] == 1);
   CHECK(occluded[1] == 0);
-  TraceClosest(empty.value(), inside, 2, {.t = t, .primitive = primitive}, near);
-  TraceOccluded(empty.value(), inside, 2, occluded);
+  TraceClosest(empty.value(), inside, 2, {.t = t, .primitive = primitive}, near).value();
+  TraceOccluded(empty.value(), inside, 2, occluded).value();
   CHECK(t[0] == 2);
   CHECK(primitive[0] == kNoPrimitive);
   CHECK(occluded[0] == 0);
@@ -317,17 +318,17 @@ TEST_CASE("a geometry that was moved from is empty") {
   const RayArrays ray = {x, x, z, zero, zero, one};
   float t[1];
   std::uint32_t primitive[1], object[1], occluded[1];
-  TraceClosest(left, ray, 1, {.t = t, .primitive = primitive, .object = object});
+  TraceClosest(left, ray, 1, {.t = t, .primitive = primitive, .object = object}).value();
   CHECK(t[0] == std::numeric_limits<float>::max());
   CHECK(primitive[0] == Geometry::kNoPrimitive);
   CHECK(object[0] == Geometry::kNoPrimitive);
-  TraceOccluded(left, ray, 1, occluded);
+  TraceOccluded(left, ray, 1, occluded).value();
   CHECK(occluded[0] == 0);
   CHECK(left.object_count() == 0);
   CHECK(left.first_primitive(0) == 0);
   CHECK(left.lower()[2] > left.upper()[2]);
   CHECK(left.statistics().nodes == 0);
-  TraceOccluded(taken, ray, 1, occluded);
+  TraceOccluded(taken, ray, 1, occluded).value();
   CHECK(occluded[0] == 1);
   CHECK(taken.object_count() == 1);
 }

@@ -1,6 +1,7 @@
 // The command `sheaf`. docs/command.md is its manual.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "sheaf/render.h"
 #include "sheaf/version.h"
 #include "src/app/commands.h"
 #include "src/app/exit_code.h"
@@ -124,6 +126,9 @@ ExitCode Main(int argc, char** argv) {
   // limit of its size. Ignored, they become failed writes, which are reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  // More threads than cores: a user who asks for them gets them. Nobody else is in this process.
+  const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            kMaxThreads);
 
   CLI::App app("Sheaf, a SIMD packet ray tracer for CPUs", "sheaf");
   app.set_version_flag("--version", fmt::format("sheaf {}", kVersion));

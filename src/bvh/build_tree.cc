@@ -1,6 +1,5 @@
 #include "src/bvh/build_tree.h"
 
-#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -72,10 +71,7 @@ Result<Tree<Real>> BuildTree(const GeometryView<Real>& geometry, int threads) {
   CountsByKind<std::uint64_t> counts;
   ForEachKind(geometry, [&](const auto& arrays) { counts[arrays.kKind] = arrays.count; });
   if (const Status status = CheckCounts(counts); !status.ok()) return status.error();
-  threads = ThreadCount(threads);
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(threads));
-  oneapi::tbb::task_arena arena(threads);
+  oneapi::tbb::task_arena arena(ThreadCount(threads));
   return arena.execute([&] { return Build(geometry); });
 }
 

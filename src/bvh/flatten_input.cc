@@ -67,15 +67,20 @@ struct InputObject {
     return true;
   }
 
-  // "" or what does not divide.
-  std::string CountFault() const {
+  // "" or which array is null, or does not divide.
+  std::string ArrayFault() const {
+    const auto is_null = [](const auto& span) { return span.data() == nullptr && !span.empty(); };
+    if (is_null(numbers)) return is_mesh() ? "the vertices are null" : "the numbers are null";
+    if (is_null(indices)) return "the indices are null";
     const auto fault = [](std::size_t count, const char* what, std::uint32_t by) {
       if (count % by == 0) return std::string();
       return std::to_string(count) + " " + what + " do not divide by " + std::to_string(by);
     };
     if (!is_mesh()) return fault(numbers.size(), "numbers", FieldCountOf(kind));
     const std::string of_vertices = fault(numbers.size(), "vertex coordinates", 3);
-    return of_vertices.empty() ? fault(indices.size(), "indices", 3) : of_vertices;
+    if (!of_vertices.empty()) return of_vertices;
+    if (indices.empty() && !numbers.empty()) return "vertices without indices";
+    return fault(indices.size(), "indices", 3);
   }
 
   // What is wrong with a primitive that is.
@@ -122,7 +127,7 @@ Result<FlatInput> GeometryAccess::Flatten(const GeometryInput& input, int thread
   for (const auto& [kind, numbers, indices] : input.objects_) {
     const InputObject& object =
         objects.emplace_back(InputObject{static_cast<PrimitiveKind>(kind), numbers, indices});
-    if (const std::string fault = object.CountFault(); !fault.empty()) {
+    if (const std::string fault = object.ArrayFault(); !fault.empty()) {
       return Usage("object " + std::to_string(objects.size() - 1) + ": " + fault);
     }
     counts[object.kind] += object.primitive_count();

@@ -1,12 +1,16 @@
 // From arrays of any length to the kernels, which take whole vectors: all but the last few rays in
 // place, the rest through a padded copy.
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
 
 #include "sheaf/geometry.h"
 #include "simd/kernels.h"
 #include "simd/query.h"
 #include "simd/streams.h"
 #include "src/bvh/geometry_access.h"
+#include "src/bvh/ray_batches.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf {
@@ -14,14 +18,14 @@ namespace {
 
 constexpr std::uint32_t kChunk = 256;  // rays at a time where a result is not wanted
 
-RayView<float> Skip(RayView<float> rays, std::uint32_t first) {
+RayView<float> Skip(RayView<float> rays, std::size_t first) {
   ForEachField(rays, [&](auto& field) {
     if (field) field += first;
   });
   return rays;
 }
 
-RayIntervals<float> Skip(RayIntervals<float> intervals, std::uint32_t first) {
+RayIntervals<float> Skip(RayIntervals<float> intervals, std::size_t first) {
   if (intervals.t_min) intervals.t_min += first;
   if (intervals.t_max) intervals.t_max += first;
   return intervals;
@@ -42,7 +46,7 @@ Coherence CoherenceOf(RayCoherence coherence) {
 }
 
 template <typename T>
-T* Skip(T* array, std::uint32_t first) {
+T* Skip(T* array, std::size_t first) {
   return array ? array + first : nullptr;
 }
 
@@ -157,6 +161,21 @@ void TraceChunk(const Geometry& geometry, const RayView<float>& rays,
   if (hits.object) FindObjects(geometry, output.primitive, count, hits.object);
 }
 
+Error NullArray(const char* name) { return {ErrorKind::kUsage, std::string(name) + " is null"}; }
+
+// Names the array that is missing.
+Status CheckRays(const RayArrays& rays, std::size_t count) {
+  if (count == 0) return Done{};
+  const std::pair<const char*, const float*> arrays[] = {
+      {"origin_x", rays.origin_x},       {"origin_y", rays.origin_y},
+      {"origin_z", rays.origin_z},       {"direction_x", rays.direction_x},
+      {"direction_y", rays.direction_y}, {"direction_z", rays.direction_z}};
+  for (const auto& [name, array] : arrays) {
+    if (!array) return NullArray(name);
+  }
+  return Done{};
+}
+
 }  // namespace
 
 RayView<float> ViewOf(const RayArrays& rays) {
@@ -177,28 +196,24 @@ TraceInterval IntervalOf(const RayIntervals<float>& intervals) {
   return {intervals.t_min, intervals.t_max, intervals.all_t_min, intervals.all_t_max};
 }
 
-void TraceClosest(const Geometry& geometry, const RayArrays& given, std::uint32_t count,
-                  const HitArrays& hits, const TraceOptions& options) {
+Status TraceClosest(const Geometry& geometry, const RayArrays& given, std::size_t count,
+                    const HitArrays& hits, const TraceOptions& options) {
+  if (Status checked = CheckRays(given, count); !checked) return checked;
   HitScratch scratch;
   const TraceKernels kernels = KernelsOf(options.target);
   const RayView<float> rays = ViewOf(given);
   const RayIntervals<float> intervals = IntervalsOf(options.interval);
   const Coherence coherence = CoherenceOf(options.coherence);
   const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
-  const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
-  const std::uint32_t step = has_all ? whole : kChunk;
-  const auto hits_from = [&](std::uint32_t first) {
-    return HitArrays{Skip(hits.t, first), Skip(hits.primitive, first), Skip(hits.object, first),
-                     Skip(hits.u, first), Skip(hits.v, first)};
-  };
-  for (std::uint32_t first = 0; first < whole;) {
-    const std::uint32_t n = std::min(step, whole - first);
-    TraceChunk(geometry, Skip(rays, first), Skip(intervals, first), coherence, n, hits_from(first),
-               kernels, scratch);
-    first += n;
-  }
-  const std::uint32_t rest = count - whole;
-  if (rest == 0) return;
+  const std::size_t whole = count / kMaxLanes * kMaxLanes;
+  ForEachBatch(whole, has_all ? kMaxBatch : kChunk, [&](std::size_t first, std::uint32_t n) {
+    const HitArrays part = {Skip(hits.t, first), Skip(hits.primitive, first),
+                            Skip(hits.object, first), Skip(hits.u, first), Skip(hits.v, first)};
+    TraceChunk(geometry, Skip(rays, first), Skip(intervals, first), coherence, n, part, kernels,
+               scratch);
+  });
+  const auto rest = static_cast<std::uint32_t>(count - whole);
+  if (rest == 0) return Done{};
   const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
   std::uint32_t object[kMaxLanes];
   TraceChunk(geometry, padded.view(), padded.intervals(), coherence, rest,
@@ -211,23 +226,30 @@ void TraceClosest(const Geometry& geometry, const RayArrays& given, std::uint32_
   copy(scratch.v, hits.v);
   copy(scratch.primitive, hits.primitive);
   copy(object, hits.object);
+  return Done{};
 }
 
-void TraceOccluded(const Geometry& geometry, const RayArrays& given, std::uint32_t count,
-                   std::uint32_t* occluded, const TraceOptions& options) {
+Status TraceOccluded(const Geometry& geometry, const RayArrays& given, std::size_t count,
+                     std::uint32_t* occluded, const TraceOptions& options) {
+  if (Status checked = CheckRays(given, count); !checked) return checked;
+  if (count > 0 && !occluded) return NullArray("occluded");
   const TraceKernels kernels = KernelsOf(options.target);
   const TreeView<float>& tree = GeometryAccess::TreeOf(geometry);
   const RayView<float> rays = ViewOf(given);
   const RayIntervals<float> intervals = IntervalsOf(options.interval);
   const Coherence coherence = CoherenceOf(options.coherence);
-  const std::uint32_t whole = count / kMaxLanes * kMaxLanes;
-  if (whole > 0) kernels.occluded(tree, rays, intervals, whole, coherence, occluded);
-  const std::uint32_t rest = count - whole;
-  if (rest == 0) return;
+  const std::size_t whole = count / kMaxLanes * kMaxLanes;
+  ForEachBatch(whole, kMaxBatch, [&](std::size_t first, std::uint32_t n) {
+    kernels.occluded(tree, Skip(rays, first), Skip(intervals, first), n, coherence,
+                     occluded + first);
+  });
+  const auto rest = static_cast<std::uint32_t>(count - whole);
+  if (rest == 0) return Done{};
   const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
   std::uint32_t lanes[kMaxLanes];
   kernels.occluded(tree, padded.view(), padded.intervals(), rest, coherence, lanes);
   std::copy(lanes, lanes + rest, occluded + whole);
+  return Done{};
 }
 
 }  // namespace sheaf

@@ -7,20 +7,23 @@
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cstddef>
 
 namespace sheaf {
 
 int ThreadCount(int threads) {
-  return threads > 0 ? threads : oneapi::tbb::info::default_concurrency();
+  using oneapi::tbb::global_control;
+  // The limit is the host's: a core each, unless it has set another.
+  const std::size_t most = global_control::active_value(global_control::max_allowed_parallelism);
+  const int wanted = threads > 0 ? threads : oneapi::tbb::info::default_concurrency();
+  return static_cast<int>(std::min(static_cast<std::size_t>(wanted), most));
 }
 
 void ParallelFor(int threads, std::uint64_t count,
                  const std::function<void(int worker, std::uint64_t item)>& body) {
   assert(threads > 0);
-  // More threads than cores are allowed: a user who asks for them gets them.
-  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(threads));
   oneapi::tbb::task_arena arena(threads);
   arena.execute([&] {
     oneapi::tbb::parallel_for(

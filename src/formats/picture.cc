@@ -71,14 +71,20 @@ Result<PictureWriter> PictureWriter::Create(const std::string& path, const Pictu
   return PictureWriter(std::move(encoder).value());
 }
 
+namespace {
+Error MovedFrom() { return {ErrorKind::kUsage, "a picture writer that was moved from"}; }
+}  // namespace
+
 PictureWriter::PictureWriter(std::unique_ptr<PictureEncoder> encoder)
     : encoder_(std::move(encoder)) {}
 PictureWriter::PictureWriter(PictureWriter&&) noexcept = default;
 PictureWriter& PictureWriter::operator=(PictureWriter&&) noexcept = default;
 PictureWriter::~PictureWriter() = default;
 
-Status PictureWriter::WriteRows(const Film& rows) { return encoder_->WriteRows(rows); }
-Status PictureWriter::Finish() { return encoder_->Finish(); }
+Status PictureWriter::WriteRows(const Film& rows) {
+  return encoder_ ? encoder_->WriteRows(rows) : MovedFrom();
+}
+Status PictureWriter::Finish() { return encoder_ ? encoder_->Finish() : MovedFrom(); }
 
 Status WritePicture(const Film& film, Transfer transfer, const std::string& path) {
   return WritePicture(film, WholePicture(film.width, film.height, transfer), path);

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <variant>
 
 #include "src/formats/suggest_name.h"
+#include "src/scene/direction.h"
 #include "src/scene/projection.h"
 
 namespace sheaf {
@@ -99,11 +98,10 @@ Camera ReadCamera(const JsonCursor& value, NameTable* names) {
   object.Finish();
 
   if (!has_eye || !has_target || !has_up) return camera;
-  const Vec3d view = camera.look_at - camera.eye;
-  if (std::abs(view.x) < 1e-30 && std::abs(view.y) < 1e-30 && std::abs(view.z) < 1e-30) {
-    look_at.Fail("the camera looks at its own eye");
-  } else if (glm::length(glm::cross(Normalized(view), Normalized(camera.up))) < 1e-6) {
-    (up.present() ? up : look_at).Fail("the view direction is parallel to up");
+  const ViewFault fault = FindViewFault(camera);
+  if (fault != ViewFault::kNone) {
+    const bool is_up = fault == ViewFault::kParallelToUp && up.present();
+    (is_up ? up : look_at).Fail(TextOf(fault));
   }
   return camera;
 }

@@ -9,6 +9,7 @@
 
 #include "src/core/match.h"
 #include "src/formats/suggest_name.h"
+#include "src/scene/direction.h"
 
 namespace sheaf {
 namespace {
@@ -50,10 +51,7 @@ void ReadFalloff(const JsonCursor& value, Falloff* out) {
   const bool linear = (*terms)[1].Read(kFalloffTerm, &falloff.linear);
   const bool quadratic = (*terms)[2].Read(kFalloffTerm, &falloff.quadratic);
   if (!constant || !linear || !quadratic) return;
-  // Smaller terms would be zero in a float, and light would be divided by it.
-  if (falloff.constant < 1e-30 && falloff.linear < 1e-30 && falloff.quadratic < 1e-30) {
-    return value.Fail("one of the terms must be at least 1e-30");
-  }
+  if (!HasTerm(falloff)) return value.Fail(kFalloffFault);
   *out = falloff;
 }
 

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
+#include "src/scene/direction.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -23,10 +22,6 @@ bool ReadTriple(const JsonCursor& value, const NumberRange& range, std::string_v
   for (int i = 0; i < 3; ++i) is_right &= (*elements)[i].Read(range, &triple[i]);
   if (is_right) *out = triple;
   return is_right;
-}
-
-double LargestComponent(const Vec3d& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
 }  // namespace
@@ -67,7 +62,7 @@ bool ReadPictureColour(const JsonCursor& value, Transfer transfer, Colour* out,
 bool ReadDirection(const JsonCursor& value, Vec3d* out) {
   Vec3d direction{0.0};
   if (!ReadVector(value, &direction)) return false;
-  if (LargestComponent(direction) < 1e-30) {
+  if (!GivesDirection(direction)) {
     value.Fail("the vector is zero and gives no direction");
     return false;
   }
@@ -76,11 +71,6 @@ bool ReadDirection(const JsonCursor& value, Vec3d* out) {
 }
 
 Json VectorJson(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
-Vec3d Normalized(const Vec3d& vector) {
-  const Vec3d v = vector / LargestComponent(vector);  // so that no square over- or underflows
-  return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
 
 bool HasControlCharacter(std::string_view name) {
   return std::any_of(name.begin(), name.end(), [](char c) {

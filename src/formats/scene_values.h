@@ -41,9 +41,6 @@ bool ReadDirection(const JsonCursor& value, Vec3d* out);
 using Json = nlohmann::ordered_json;
 Json VectorJson(const Vec3d& v);
 
-// Unit length, for any vector with a component of at least 1e-30 in size.
-Vec3d Normalized(const Vec3d& vector);
-
 // Names end up in messages and file names: no control characters.
 bool HasControlCharacter(std::string_view name);
 bool ReadName(const JsonCursor& value, std::string* out);

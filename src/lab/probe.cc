@@ -63,8 +63,9 @@ void CheckKernels(Report& report, Target target, const Geometry& geometry,
   options.interval.t_max = flat.t_max.data();
   TraceClosest(geometry, flat.view(), count,
                {.t = t.data(), .primitive = primitive.data(), .u = u.data(), .v = v.data()},
-               options);
-  TraceOccluded(geometry, flat.view(), count, occluded.data(), options);
+               options)
+      .value();
+  TraceOccluded(geometry, flat.view(), count, occluded.data(), options).value();
   for (std::uint32_t i = 0; i < count; ++i) {
     const Hit found{t[i], primitive[i], u[i], v[i]};
     if (!SameHit(found, expected[i])) {

@@ -111,6 +111,8 @@ Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions
                    RenderProgress* progress) {
   const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
   if (!checked) return checked.error();
+  if (Status sound = Validate(scene); !sound) return sound;
+  if (Status sound = Validate(camera); !sound) return sound;
   RenderStats ignored_stats;
   RenderProgress ignored_progress;
   RenderStats& kept_stats = stats ? *stats : ignored_stats;

@@ -2,7 +2,8 @@
 #ifndef SHEAF_SHEAF_ERROR_H_
 #define SHEAF_SHEAF_ERROR_H_
 
-#include <cassert>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,7 +24,15 @@ struct Error {
   std::string message;
 };
 
-// A value or an Error. Accessing the alternative that is not there is a broken invariant.
+namespace internal {
+[[noreturn]] inline void End(const char* call, const char* message) {
+  std::fprintf(stderr, "sheaf: %s: %s\n", call, message);
+  std::abort();
+}
+}  // namespace internal
+
+// A value or an Error. Asking for the alternative that is not there ends the program, in every
+// build, with the error's message on standard error: ask ok() first.
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -34,23 +43,27 @@ class [[nodiscard]] Result {
   explicit operator bool() const { return ok(); }
 
   T& value() & {
-    assert(ok());
+    CheckOk();
     return *std::get_if<0>(&state_);
   }
   const T& value() const& {
-    assert(ok());
+    CheckOk();
     return *std::get_if<0>(&state_);
   }
   T&& value() && {
-    assert(ok());
+    CheckOk();
     return std::move(*std::get_if<0>(&state_));
   }
   const Error& error() const {
-    assert(!ok());
+    if (ok()) internal::End("Result::error()", "there is none");
     return *std::get_if<1>(&state_);
   }
 
  private:
+  void CheckOk() const {
+    if (!ok()) internal::End("Result::value() of an error", error().message.c_str());
+  }
+
   std::variant<T, Error> state_;
 };
 

@@ -73,6 +73,16 @@ struct Film {
 
   Film() = default;
   explicit Film(int w, int h, Layers wanted = {}) { Resize(w, h, wanted); }
+  Film(const Film&) = default;
+  Film& operator=(const Film&) = default;
+  Film(Film&& other) noexcept { *this = std::move(other); }
+  Film& operator=(Film&& other) noexcept {
+    width = std::exchange(other.width, 0);
+    height = std::exchange(other.height, 0);
+    rgb = std::exchange(other.rgb, {});
+    for (int i = 0; i < kLayerCount; ++i) layers[i] = std::exchange(other.layers[i], {});
+    return *this;
+  }
   // What it held is lost, but not its memory.
   void Resize(int w, int h, Layers wanted) {
     width = w;

@@ -3,11 +3,15 @@
 //   GeometryInput input;
 //   input.AddTriangles(vertices, indices);
 //   Result<Geometry> geometry = Geometry::Build(input);
-//   TraceClosest(geometry.value(), rays, count, hits);
+//   TraceClosest(geometry.value(), rays, count, hits).value();
 //
 // Lengths are in any one unit. Everything is single precision; the hits are those of strict
-// arithmetic, the same bits on every processor. Memory that runs out throws std::bad_alloc; nothing
-// else throws.
+// arithmetic, the same bits on every processor. Memory that runs out throws std::bad_alloc, and
+// leaves whatever there was as it was; nothing else throws.
+//
+// Whether the processor flushes denormals to zero (FTZ, DAZ) is up to the host: the library neither
+// needs nor changes it. Hits depend on it only where coordinates themselves, or differences of
+// coordinates, are below the smallest normal number.
 #ifndef SHEAF_SHEAF_GEOMETRY_H_
 #define SHEAF_SHEAF_GEOMETRY_H_
 
@@ -79,10 +83,12 @@ class Geometry {
   SHEAF_API Geometry& operator=(Geometry&& other) noexcept;
   SHEAF_API ~Geometry();
 
-  // Builds on `threads` threads (0: one a core); the geometry does not depend on how many. Fails
-  // with kUsage and the object's and the primitive's number where an index is out of range, a
-  // coordinate is not finite, a radius is negative or a count does not divide, and with kUsage
-  // where there are more than 2^26 primitives of a kind.
+  // Builds on `threads` threads (0: one a core), in an arena of oneTBB of its own: of more than the
+  // process allows oneTBB, which is one a core unless the host sets another limit, the rest is left
+  // out. The geometry does not depend on how many. Fails with kUsage and the object's and the
+  // primitive's number where an array is null, an index is out of range, a coordinate is not
+  // finite, a radius is negative or a count does not divide, and with kUsage where there are more
+  // than 2^26 primitives of a kind.
   SHEAF_API static Result<Geometry> Build(const GeometryInput& input, int threads = 0);
 
   // The smallest box around the primitives, up to a millionth of its size; lower > upper where
@@ -121,11 +127,12 @@ struct RayArrays {
 };
 
 // A hit at t counts where t_min <= t <= t_max. An array where each ray has its own interval, else
-// one value for all. By default every hit in front of the origin counts, but none at exactly 0.
+// one value for all. By default every hit in front of the origin counts, but none at 0 nor below
+// the smallest normal number, which is 0 to a host that flushes denormals.
 struct TraceInterval {
   const float* t_min = nullptr;
   const float* t_max = nullptr;
-  float all_t_min = std::numeric_limits<float>::denorm_min();
+  float all_t_min = std::numeric_limits<float>::min();
   float all_t_max = std::numeric_limits<float>::max();
 };
 
@@ -161,15 +168,15 @@ struct HitArrays {
 // The nearest hit of each of `count` rays; of equal t the lowest primitive. Rays with a component
 // that is not finite, with no direction or with t_min > t_max miss. Rays with t_min < 0 or with
 // directions of odd length take a little longer; rays from further away than 5e11 are tested
-// against every primitive. Takes at most 64 KiB of stack. Safe to call from any number of threads
-// at once.
-SHEAF_API void TraceClosest(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
-                            const HitArrays& hits, const TraceOptions& options = {});
+// against every primitive. Takes at most 64 KiB of stack. Fails with kUsage where an origin or a
+// direction is null, before anything is written. Safe to call from any number of threads at once.
+SHEAF_API Status TraceClosest(const Geometry& geometry, const RayArrays& rays, std::size_t count,
+                              const HitArrays& hits, const TraceOptions& options = {});
 
-// Writes to occluded[0, count): 1 where a ray hits anything within its interval, else 0. Rays and
-// threads as with TraceClosest.
-SHEAF_API void TraceOccluded(const Geometry& geometry, const RayArrays& rays, std::uint32_t count,
-                             std::uint32_t* occluded, const TraceOptions& options = {});
+// Writes to occluded[0, count): 1 where a ray hits anything within its interval, else 0. Rays,
+// threads and failures as with TraceClosest; fails where `occluded` is null too.
+SHEAF_API Status TraceOccluded(const Geometry& geometry, const RayArrays& rays, std::size_t count,
+                               std::uint32_t* occluded, const TraceOptions& options = {});
 
 }  // namespace sheaf
 

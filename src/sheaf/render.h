@@ -65,8 +65,9 @@ struct RenderOptions {
   // What computes it. It never changes a bit of the picture but in fast arithmetic.
   Target target{};
   Precision precision = Precision::kStrict;
-  // At most so many threads render, in [1, kMaxThreads]; 0: one a core that the process may use. It
-  // never changes a bit of the picture.
+  // At most so many threads render, in [1, kMaxThreads]; 0: one a core that the process may use.
+  // oneTBB's limit in this process, one a core unless the host sets another, is kept to. It never
+  // changes a bit of the picture.
   int threads = 0;
   // Pixels a side of the squares that threads take, in [1, kMaxTileSize]. It never changes a bit of
   // the picture.
@@ -91,10 +92,10 @@ struct RenderProgress {
 };
 
 // Renders what `camera`, one of the scene's or any other, sees of `scene`. Returns the picture, or
-// its crop, in linear light. The scene keeps the rules of sheaf/scene.h. `stats` is overwritten,
-// `progress` read and written; both may be null. Fails with kUsage where an option is out of range,
-// with kScene where the scene has too many primitives, with kInterrupted where progress->stop was
-// set. Blocks until the frame is done or has failed.
+// its crop, in linear light. `stats` is overwritten, `progress` read and written; both may be null.
+// Fails with kUsage where an option is out of range, with kScene where the scene or the camera
+// breaks a rule of sheaf/scene.h (Validate says which) or the scene has too many primitives, with
+// kInterrupted where progress->stop was set. Blocks until the frame is done or has failed.
 SHEAF_API Result<Film> Render(const Scene& scene, const Camera& camera,
                               const RenderOptions& options = {}, RenderStats* stats = nullptr,
                               RenderProgress* progress = nullptr);

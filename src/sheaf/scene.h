@@ -1,7 +1,8 @@
 // A scene as a person describes it: names, double precision, no layout for speed.
 //
 // Lengths are in one unit of the user's choice, angles in degrees, colours linear RGB. The renderer
-// compiles a Scene into flat arrays (render/compile_scene.h); nothing here is read per ray.
+// compiles a Scene into flat arrays (render/compile_scene.h); nothing here is read per ray. A
+// finite number is one that stays finite as a float.
 #ifndef SHEAF_SHEAF_SCENE_H_
 #define SHEAF_SHEAF_SCENE_H_
 
@@ -15,6 +16,9 @@
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/version.h"
 
 namespace sheaf {
 
@@ -205,7 +209,7 @@ struct View {
   std::vector<std::uint32_t> cameras;  // indices into Scene::cameras
 };
 
-// Readers take no larger number for a place or a length: sums of a few are finite as floats.
+// No number for a place or a length is larger: sums of a few are finite as floats.
 inline constexpr double kMaxCoordinate = 1e30;
 
 inline constexpr int kMaxImageSide = 65536;
@@ -230,6 +234,13 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<View> views;
 };
+
+// Whether a scene, or a camera alone, keeps the rules of this header: every index in range, every
+// number finite and in its range, every array as long as it has to be. kScene otherwise, with one
+// line that names what is wrong first, like `object 2 "wall": material 7 of 3`. Render asks this of
+// what it is given; readers give nothing that fails it. Any number of threads may ask.
+SHEAF_API Status Validate(const Scene& scene);
+SHEAF_API Status Validate(const Camera& camera);
 
 }  // namespace sheaf
 

@@ -1,0 +1,28 @@
+// What makes vectors directions, and a camera a view: one place for readers and for Validate.
+#ifndef SHEAF_SCENE_DIRECTION_H_
+#define SHEAF_SCENE_DIRECTION_H_
+
+#include "sheaf/scene.h"
+
+namespace sheaf {
+
+// Whether the largest component is at least 1e-30 in size; false for NaN there.
+bool GivesDirection(const Vec3d& vector);
+
+// Unit length, of a vector that gives a direction.
+Vec3d Normalized(const Vec3d& vector);
+
+enum class ViewFault { kNone, kNoDirection, kParallelToUp };
+
+// What keeps a camera, whose vectors are finite and whose up gives a direction, from a view.
+ViewFault FindViewFault(const Camera& camera);
+// "" for none.
+const char* TextOf(ViewFault fault);
+
+// Whether light is divided by more than 0: smaller terms would be zero in a float.
+bool HasTerm(const Falloff& falloff);
+inline constexpr const char* kFalloffFault = "one of the terms must be at least 1e-30";
+
+}  // namespace sheaf
+
+#endif  // SHEAF_SCENE_DIRECTION_H_

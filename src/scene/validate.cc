@@ -1,0 +1,245 @@
+// The rules of sheaf/scene.h, asked of a scene that a program made.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sheaf/scene.h"
+#include "src/core/match.h"
+#include "src/scene/direction.h"
+#include "src/scene/projection.h"
+
+namespace sheaf {
+namespace {
+
+// What a number has to be. Comparisons are false for NaN, which is in no range.
+struct Range {
+  double low, high;
+  const char* text;
+
+  bool Has(double x) const { return low <= x && x <= high; }
+};
+
+constexpr double kLargest = std::numeric_limits<float>::max();
+constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+constexpr Range kPlace{-kMaxCoordinate, kMaxCoordinate, "a number in [-1e30, 1e30]"};
+constexpr Range kLength{0, kMaxCoordinate, "a number in [0, 1e30]"};
+constexpr Range kAny{-kLargest, kLargest, "a finite float"};
+constexpr Range kAtLeastZero{0, kLargest, "a finite float of at least 0"};
+constexpr Range kPositive{kSmallest, kLargest, "a finite float above 0"};
+constexpr Range kShare{0, 1, "a number in [0, 1]"};
+constexpr Range kAngle{0, 90, "a number in [0, 90]"};
+
+// The first thing that is wrong with a part of a scene, if any.
+class FirstFault {
+ public:
+  bool found() const { return !text_.empty(); }
+  const std::string& text() const { return text_; }
+
+  void Fail(std::string what) {
+    if (!found()) text_ = std::move(what);
+  }
+  void Number(std::string_view name, double value, const Range& range) {
+    if (!range.Has(value)) Fail(fmt::format("{} is {}, not {}", name, value, range.text));
+  }
+  template <typename Vector>
+  void Components(std::string_view name, const Vector& vector, const Range& range) {
+    for (int i = 0; i < Vector::length(); ++i) {
+      Number(name, static_cast<double>(vector[i]), range);
+    }
+  }
+  void Direction(std::string_view name, const Vec3d& vector) {
+    Components(name, vector, kPlace);
+    if (!GivesDirection(vector)) Fail(fmt::format("{} is 0 and gives no direction", name));
+  }
+  void Index(std::string_view kind, std::uint32_t index, std::size_t count) {
+    if (index >= count) Fail(fmt::format("{} {} of {}", kind, index, count));
+  }
+  // One value a vertex, or none.
+  template <typename Vector>
+  void PerVertex(std::string_view name, const std::vector<Vector>& values, const Range& range,
+                 std::size_t vertices) {
+    if (!values.empty() && values.size() != vertices) {
+      Fail(fmt::format("{} {} for {} vertices", values.size(), name, vertices));
+    }
+    for (std::size_t i = 0; i < values.size() && !found(); ++i) {
+      for (int k = 0; k < Vector::length(); ++k) {
+        if (range.Has(static_cast<double>(values[i][k]))) continue;
+        Number(fmt::format("vertex {}: one of the {}", i, name), static_cast<double>(values[i][k]),
+               range);
+      }
+    }
+  }
+
+ private:
+  std::string text_;
+};
+
+void Check(const Material& material, FirstFault& fault) {
+  Match(
+      material.base_colour,
+      [&](const Colour& colour) { fault.Components("base_colour", colour, kAtLeastZero); },
+      [&](const Checker& checker) {
+        fault.Components("base_colour.even", checker.even, kAtLeastZero);
+        fault.Components("base_colour.odd", checker.odd, kAtLeastZero);
+        fault.Components("base_colour.cells", checker.cells, kPositive);
+      },
+      [&](const Texture& texture) {
+        fault.Components("base_colour.factor", texture.factor, kAtLeastZero);
+        if (!texture.image) return fault.Fail("base_colour.image is null");
+        const Image& image = *texture.image;
+        constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};
+        fault.Number("base_colour.image.width", image.width, kSide);
+        fault.Number("base_colour.image.height", image.height, kSide);
+        const auto texels =
+            static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+        if (!fault.found() && image.texels.size() != texels) {
+          fault.Fail(fmt::format("base_colour.image has {} texels, not {} x {}",
+                                 image.texels.size(), image.width, image.height));
+        }
+      });
+  fault.Components("emission", material.emission, kAtLeastZero);
+  fault.Number("ambient", material.ambient, kAtLeastZero);
+  fault.Number("kd", material.kd, kAtLeastZero);
+  fault.Number("ks", material.ks, kAtLeastZero);
+  fault.Number("shininess", material.shininess, kAtLeastZero);
+  fault.Components("reflect", material.reflect, kShare);
+  fault.Components("transmit", material.transmit, kShare);
+  fault.Number("ior", material.ior, kPositive);
+}
+
+void CheckMesh(const Mesh& mesh, FirstFault& fault) {
+  const std::size_t vertices = mesh.positions.size();
+  fault.PerVertex("positions", mesh.positions, kPlace, vertices);
+  fault.PerVertex("normals", mesh.normals, kAny, vertices);
+  fault.PerVertex("uv", mesh.uv, kAny, vertices);
+  fault.PerVertex("colours", mesh.colours, kAtLeastZero, vertices);
+  for (std::size_t i = 0; i < mesh.triangles.size() && !fault.found(); ++i) {
+    for (const std::uint32_t corner : mesh.triangles[i]) {
+      if (corner >= vertices) fault.Index(fmt::format("triangle {}: vertex", i), corner, vertices);
+    }
+  }
+}
+
+void Check(const Object& object, FirstFault& fault) {
+  Match(
+      object.shape,
+      [&](const Sphere& sphere) {
+        fault.Components("center", sphere.center, kPlace);
+        fault.Number("radius", sphere.radius, kLength);
+      },
+      [&](const Quad& quad) {
+        for (const Vec3d& corner : quad.corners) fault.Components("a corner", corner, kPlace);
+      },
+      [&](const Triangle& triangle) {
+        for (const Vec3d& vertex : triangle.vertices) fault.Components("a vertex", vertex, kPlace);
+        for (const glm::dvec2& uv : triangle.uv) fault.Components("uv", uv, kAny);
+      },
+      [&](const Mesh& mesh) { CheckMesh(mesh, fault); },
+      [&](const Disk& disk) {
+        fault.Components("center", disk.center, kPlace);
+        fault.Number("radius", disk.radius, kLength);
+        fault.Components("normal", disk.normal, kPlace);
+      });
+}
+
+void CheckSource(const PointLight& point, FirstFault& fault) {
+  fault.Components("position", point.position, kPlace);
+  fault.Number("falloff.constant", point.falloff.constant, kLength);
+  fault.Number("falloff.linear", point.falloff.linear, kLength);
+  fault.Number("falloff.quadratic", point.falloff.quadratic, kLength);
+  if (!HasTerm(point.falloff)) fault.Fail(fmt::format("falloff: {}", kFalloffFault));
+  if (!point.cone) return;
+  fault.Direction("cone.direction", point.cone->direction);
+  fault.Number("cone.inner", point.cone->inner, kAngle);
+  fault.Number("cone.outer", point.cone->outer, kAngle);
+  if (!(point.cone->inner < point.cone->outer)) fault.Fail("cone.inner must be below cone.outer");
+}
+
+void Check(const Light& light, FirstFault& fault) {
+  Match(
+      light.source, [&](const PointLight& point) { CheckSource(point, fault); },
+      [&](const DirectionalLight& sun) { fault.Direction("direction", sun.direction); });
+  fault.Components("colour", light.colour, kAtLeastZero);
+  fault.Number("intensity", light.intensity, kAtLeastZero);
+}
+
+void Check(const Camera& camera, FirstFault& fault) {
+  fault.Components("eye", camera.eye, kPlace);
+  fault.Components("look_at", camera.look_at, kPlace);
+  fault.Direction("up", camera.up);
+  if (!fault.found()) fault.Fail(TextOf(FindViewFault(camera)));
+  const ProjectionKind& kind = KindOf(camera.projection);
+  if (kind.unit == ProjectionUnit::kNone) return;
+  fault.Number(kind.parameter, ParameterOf(camera.projection),
+               {kSmallest, kind.largest, kind.range});
+}
+
+void Check(const Settings& settings, FirstFault& fault) {
+  fault.Number("width", settings.width, {1, kMaxImageSide, "a number in [1, 65536]"});
+  fault.Number("height", settings.height, {1, kMaxImageSide, "a number in [1, 65536]"});
+  fault.Number("samples", settings.samples, {1, kMaxSamples, "a number in [1, 65536]"});
+  fault.Number("max_depth", settings.max_depth, {0, kMaxDepth, "a number in [0, 1000000]"});
+  fault.Components("background", settings.background, kAtLeastZero);
+  if (settings.ambient) fault.Components("ambient", *settings.ambient, kAtLeastZero);
+  fault.Number("exposure", settings.exposure, kPositive);
+}
+
+Error At(const std::string& place, const FirstFault& fault) {
+  return {ErrorKind::kScene, place + ": " + fault.text()};
+}
+
+// `material 3 "glass"`; a name's control characters stay out of messages.
+std::string PlaceOf(const char* kind, std::size_t index, std::string name) {
+  if (name.empty()) return fmt::format("{} {}", kind, index);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  return fmt::format("{} {} \"{}\"", kind, index, name);
+}
+
+// Checks each of `parts` by `check`; the first fault, if any.
+template <typename Part, typename F>
+Status CheckAll(const char* kind, const std::vector<Part>& parts, F check) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    FirstFault fault;
+    check(parts[i], fault);
+    if (fault.found()) return At(PlaceOf(kind, i, parts[i].name), fault);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Status Validate(const Scene& scene) {
+  FirstFault settings;
+  Check(scene.settings, settings);
+  if (settings.found()) return At("settings", settings);
+  const auto check = [](const auto& part, FirstFault& fault) { Check(part, fault); };
+  if (Status status = CheckAll("material", scene.materials, check); !status) return status;
+  Status status = CheckAll("object", scene.objects, [&](const Object& object, FirstFault& fault) {
+    fault.Index("material", object.material, scene.materials.size());
+    Check(object, fault);
+  });
+  if (!status) return status;
+  if (status = CheckAll("light", scene.lights, check); !status) return status;
+  if (status = CheckAll("camera", scene.cameras, check); !status) return status;
+  return CheckAll("view", scene.views, [&](const View& view, FirstFault& fault) {
+    for (const std::uint32_t camera : view.cameras) {
+      fault.Index("camera", camera, scene.cameras.size());
+    }
+  });
+}
+
+Status Validate(const Camera& camera) {
+  FirstFault fault;
+  Check(camera, fault);
+  if (fault.found()) return At(PlaceOf("camera", 0, camera.name), fault);
+  return Done{};
+}
+
+}  // namespace sheaf
