@@ -170,7 +170,24 @@ TEST_CASE("PNG gives back the quantised picture and names its writer") {
     const std::string bytes = ReadText(folder / "a.png");
     CHECK(bytes.find(std::string("Software\0sheaf ", 15) + kVersion) != std::string::npos);
     CHECK((bytes.find("sRGB") != std::string::npos) == (transfer == Transfer::kSrgb));
+    CHECK((bytes.find("gAMA") != std::string::npos) == (transfer == Transfer::kLinear));
+    const Result<ReadPictureResult> picture = ReadPicture(folder / "a.png");
+    REQUIRE(picture.ok());
+    CHECK(picture.value().is_srgb == (transfer == Transfer::kSrgb));
+    CHECK(picture.value().is_linear == (transfer == Transfer::kLinear));
   }
+}
+
+TEST_CASE("a PNG of numbers that are no light says nothing of a transfer") {
+  const Folder folder;
+  const Film film = RandomFilm(5, 4);
+  PictureSpec spec = WholePicture(5, 4, Transfer::kSrgb);
+  spec.values = Values::kNumbers;
+  REQUIRE(WritePicture(film, spec, folder / "n.png").ok());
+  const std::string bytes = ReadText(folder / "n.png");
+  CHECK(bytes.find("sRGB") == std::string::npos);
+  CHECK(bytes.find("gAMA") == std::string::npos);
+  CHECK(ReadPng(folder / "n.png").value().rgb == QuantizeTo8Bit(film, Transfer::kLinear));
 }
 
 TEST_CASE("the same film gives the same PNG bytes") {

@@ -60,6 +60,23 @@ void CheckCrystalBallCameras(const Scene& scene) {
   CHECK(scene.views[1].cameras == std::vector<std::uint32_t>{3, 4});
 }
 
+TEST_CASE("scenes are written for displays unless they say otherwise, and their colours stay") {
+  CHECK(Settings().transfer == Transfer::kSrgb);
+  const std::pair<const char*, Transfer> cases[] = {{"", Transfer::kSrgb},
+                                                    {R"(, "srgb": "pictures")", Transfer::kSrgb},
+                                                    {R"(, "srgb": false)", Transfer::kLinear}};
+  for (const auto& [key, transfer] : cases) {
+    const Result<Scene> read = ParseSceneJson(
+        R"({"cameras": [{"name": "c", "eye": [0, 0, 0], "look_at": [0, 0, -1]}],
+            "settings": {"background": 0.5)" +
+            std::string(key) + "}}",
+        "s.json");
+    if (!read.ok()) FAIL(read.error().message);
+    CHECK(read.value().settings.transfer == transfer);
+    CHECK(read.value().settings.background == Colour(0.5));
+  }
+}
+
 TEST_CASE("the crystal ball holds exactly the numbers of its definition") {
   const Result<Scene> read = ReadSceneJson(kScenes + "crystal-ball.json");
   if (!read.ok()) FAIL(read.error().message);

@@ -30,7 +30,7 @@ struct ConvertRequest {
 
 // ---- Scenes ----
 
-Status WriteImage(const Image& image, const std::string& path) {
+Status WriteImage(const Image& image, Transfer transfer, const std::string& path) {
   Picture8 picture{image.width, image.height, {}};
   picture.rgb.reserve(3 * image.texels.size());
   for (const std::uint32_t texel : image.texels) {
@@ -38,34 +38,40 @@ Status WriteImage(const Image& image, const std::string& path) {
       picture.rgb.push_back(static_cast<std::uint8_t>(texel >> shift & 255));
     }
   }
-  return WritePng(picture, Transfer::kLinear, path);
+  return WritePng(picture, transfer, path);
 }
 
-// The file names of textures, by image. They are written beside the scene, as PNG.
-using TextureNames = std::map<const Image*, std::string>;
+// The files of textures, by image. They are written beside the scene, as PNG.
+struct TextureFile {
+  std::string name;
+  Transfer transfer = Transfer::kSrgb;  // of the first that uses the image
+};
+using TextureFiles = std::map<const Image*, TextureFile>;
 
-TextureNames NameTextures(const Scene& scene, const std::filesystem::path& output) {
-  TextureNames names;
+TextureFiles NameTextures(const Scene& scene, const std::filesystem::path& output) {
+  TextureFiles files;
   for (const Material& material : scene.materials) {
     const auto* texture = std::get_if<Texture>(&material.base_colour);
     if (texture == nullptr) continue;
-    const auto [entry, is_new] = names.try_emplace(texture->image.get());
+    const auto [entry, is_new] = files.try_emplace(texture->image.get());
     if (!is_new) continue;
-    entry->second = fmt::format("{}-texture-{}.png", output.stem().string(), names.size());
+    entry->second = {fmt::format("{}-texture-{}.png", output.stem().string(), files.size()),
+                     texture->transfer};
   }
-  return names;
+  return files;
 }
 
 std::string PathBeside(const std::string& output, const std::string& name) {
   return (std::filesystem::path(output).parent_path() / name).string();
 }
 
-Status WriteTextures(const TextureNames& names, const std::string& output, Scene* scene) {
+Status WriteTextures(const TextureFiles& files, const std::string& output, Scene* scene) {
   std::map<const Image*, std::shared_ptr<const Image>> renamed;
-  for (const auto& [image, name] : names) {
-    if (const Status status = WriteImage(*image, PathBeside(output, name)); !status) return status;
+  for (const auto& [image, file] : files) {
+    const Status status = WriteImage(*image, file.transfer, PathBeside(output, file.name));
+    if (!status) return status;
     Image copy = *image;
-    copy.name = name;
+    copy.name = file.name;
     renamed[image] = std::make_shared<const Image>(std::move(copy));
   }
   for (Material& material : scene->materials) {
@@ -90,7 +96,7 @@ Status ConvertScene(const ConvertRequest& request) {
   Result<OpenedScene> opened = OpenSceneAndFiles(request.input, request.options);
   if (!opened) return opened.error();
   Scene& scene = opened.value().scene;
-  const TextureNames textures = NameTextures(scene, request.output);
+  const TextureFiles textures = NameTextures(scene, request.output);
   std::vector<Output> outputs = {{"-o", request.output}};
   for (const auto& [image, name] : textures) {
     outputs.push_back({"-o", PathBeside(request.output, name)});
@@ -143,7 +149,9 @@ Status ConvertPicture(const ConvertRequest& request) {
   spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
   if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   if (keeps && picture.is_display && !HoldsFloats(request.output)) {
-    spec.values = Values::kEncoded;
+    // A .png that says nothing of its transfer makes one that says nothing.
+    const bool is_known = picture.is_srgb || picture.is_linear;
+    spec.values = is_known ? Values::kEncoded : Values::kNumbers;
   } else {
     DecodeLight(picture);
   }

@@ -48,7 +48,7 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
     if (layer == Layer::kHeat) continue;  // known when all tiles are
     PictureSpec beside = spec;
     beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
-    if (layer != Layer::kAlbedo) beside.transfer = Transfer::kLinear;
+    if (layer != Layer::kAlbedo) beside.values = Values::kNumbers;
     Result<PictureWriter> created = PictureWriter::Create(path, beside);
     if (!created) return created.error();
     const LayerLook look = HoldsFloats(path) ? LayerLook::kNumbers : LayerLook::kDisplay;

@@ -39,8 +39,9 @@ Status HeatPicture::Write(const std::string& path) const {
   if (!HoldsFloats(path)) {
     for (const std::size_t i : {0, 2}) scale[i] = 1 / UsualMost(i);
   }
-  Result<PictureWriter> writer =
-      PictureWriter::Create(path, area_.width(), area_.height(), Transfer::kLinear);
+  PictureSpec spec = WholePicture(area_.width(), area_.height(), Transfer::kLinear);
+  spec.values = Values::kNumbers;
+  Result<PictureWriter> writer = PictureWriter::Create(path, spec);
   if (!writer) return writer.error();
   Film row(area_.width(), 1);
   for (int y = 0; y < area_.height(); ++y) {

@@ -165,6 +165,12 @@ Status FillWhole(const std::vector<Part>& parts, Film& whole) {
   return Usage(fmt::format("pixel ({}, {}) is in no part", at % whole.width, at / whole.width));
 }
 
+// A .png that says nothing of its transfer makes one that says nothing.
+Values ValuesOf(const ReadPictureResult& picture) {
+  if (!picture.is_display) return Values::kLight;
+  return picture.is_srgb || picture.is_linear ? Values::kEncoded : Values::kNumbers;
+}
+
 void AddMergeOptions(CLI::App& app, MergeRequest& request) {
   AddInputs(app, "PART", request.parts, Presence::kNeeded, "Pictures that hold every pixel once");
   AddOutput(app, request.output, "PATH", "The whole, of the same format as the parts (needed)");
@@ -193,7 +199,7 @@ Status RunMerge(const MergeRequest& request) {
   if (const Status filled = FillWhole(parts, whole); !filled) return filled;
   PictureSpec spec =
       WholePicture(whole.width, whole.height, first.is_srgb ? Transfer::kSrgb : Transfer::kLinear);
-  spec.values = first.is_display ? Values::kEncoded : Values::kLight;
+  spec.values = ValuesOf(first);
   spec.metadata = MetadataOf(parts);
   if (HoldsLayers(request.output)) spec.layers = layers;
   if (CheckPictureBits(request.output, first.bits)) spec.bits = first.bits;

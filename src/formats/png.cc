@@ -67,6 +67,8 @@ class PngReader {
     if (bits == 8) png_set_scale_16(png_);
     int intent = 0;
     is_srgb = png_get_sRGB(png_, info_, &intent) != 0;
+    png_fixed_point gamma = 0;
+    is_linear = !is_srgb && png_get_gAMA_fixed(png_, info_, &gamma) != 0 && gamma == PNG_FP_1;
     int unit = 0;
     png_int_32 x = 0, y = 0;
     if (png_get_oFFs(png_, info_, &x, &y, &unit) && unit == PNG_OFFSET_PIXEL) {
@@ -101,7 +103,7 @@ class PngReader {
 
   Complaint complaint;
   int width = 0, height = 0, bits = 8;
-  bool is_srgb = false;
+  bool is_srgb = false, is_linear = false;
   int offset_x = 0, offset_y = 0, full_width = 0, full_height = 0;
   std::size_t row_bytes = 0;
   PictureMetadata metadata;
@@ -172,7 +174,14 @@ class PngWriter {
                  static_cast<png_uint_32>(spec_.window.height()), spec_.bits == 16 ? 16 : 8,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
-    if (spec_.transfer == Transfer::kSrgb) png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+    // Without either, a viewer takes bytes for sRGB.
+    if (spec_.values != Values::kNumbers) {
+      if (spec_.transfer == Transfer::kSrgb) {
+        png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+      } else {
+        png_set_gAMA_fixed(png_, info_, PNG_FP_1);
+      }
+    }
     if (!spec_.is_whole()) {
       png_set_oFFs(png_, info_, spec_.window.x0, spec_.window.y0, PNG_OFFSET_PIXEL);
     }
@@ -336,6 +345,7 @@ Result<ReadPictureResult> ReadPngFilm(const std::string& path) {
   result.is_display = true;
   result.bits = reader.bits;
   result.is_srgb = reader.is_srgb;
+  result.is_linear = reader.is_linear;
   result.metadata = reader.metadata;
   const bool is_part = reader.full_width > 0 && reader.full_height > 0;
   // Whatever a file says, the sums below do not overflow.

@@ -19,9 +19,9 @@ struct Picture8 {
   std::vector<std::uint8_t> rgb;  // 3 * width * height, interleaved, rows from the top
 };
 
-// Writes a picture of 8 or 16 bits a channel row by row. Its transfer is recorded in the file; a
-// linear picture carries no such record, because viewers would brighten it. kInputOutput where the
-// path cannot be written.
+// Writes a picture of 8 or 16 bits a channel row by row. Its transfer is recorded in the file: an
+// sRGB chunk, or a gAMA chunk of 1 where it is linear, so that viewers brighten it; neither for
+// Values::kNumbers. kInputOutput where the path cannot be written.
 NewEncoder CreatePngEncoder(const std::string& path, const PictureSpec& spec);
 
 // Writes a whole picture. `transfer` is recorded in the file and changes no pixel.

@@ -23,7 +23,7 @@ Settings ReadSettings(const JsonCursor& value, Transfer* decode) {
   object.Optional("samples").ReadInteger(kSampleCount, &settings.samples);
   object.Optional("max_depth").ReadInteger(kDepthLimit, &settings.max_depth);
   const JsonCursor srgb = object.Optional("srgb");
-  bool is_srgb = false;
+  bool is_srgb = false;  // absent: as "pictures"
   if (srgb.Is(JsonKind::kString)) {
     if (srgb.text() != "pictures") srgb.Fail("expected true, false or \"pictures\"");
     settings.transfer = Transfer::kSrgb;
@@ -46,7 +46,7 @@ Json SettingsJson(const Settings& settings) {
                {"background", VectorJson(settings.background)},
                {"exposure", settings.exposure}};
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
-  if (settings.transfer == Transfer::kSrgb) json["srgb"] = "pictures";
+  json["srgb"] = settings.transfer == Transfer::kSrgb ? Json("pictures") : Json(false);
   return json;
 }
 

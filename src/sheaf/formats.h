@@ -89,14 +89,15 @@ using PictureMetadata = std::vector<std::pair<std::string, std::string>>;  // ke
 // these keys alone.
 inline constexpr const char* kMetadataKeys[] = {"Scene", "Camera", "Settings"};
 
-// What the numbers of a film are: linear light, or what a .png holds as it is.
-enum class Values { kLight, kEncoded };
+// What the numbers of a film are: linear light; light as a .png holds it, encoded already; or
+// numbers that are no light, or nobody knows, of which a .png says no transfer.
+enum class Values { kLight, kEncoded, kNumbers };
 
 // What a picture file shall be.
 struct PictureSpec {
   PixelRect window;  // the part that the file holds of a picture of full_width x full_height
   int full_width = 0, full_height = 0;    // pixels, [1, kMaxImageSide]
-  Transfer transfer = Transfer::kLinear;  // of a .png
+  Transfer transfer = Transfer::kLinear;  // of a .png, which says so
   Values values = Values::kLight;
   int bits = 0;              // a channel, one of FileFormat::bits; 0: 8 of a .png, 32 of others
   Layers layers;             // to write, where the format holds layers; the film has them
@@ -153,6 +154,7 @@ struct ReadPictureResult {
   bool is_display = false;  // whether the values are encoded for a display: those of a .png
   int bits = 32;            // a channel
   bool is_srgb = false;     // whether a .png says that its encoding is sRGB
+  bool is_linear = false;   // whether a .png says that its values are linear light
   // Which part of a picture it is; an empty window where the format cannot say it (.pfm).
   PixelRect window;
   int full_width = 0, full_height = 0;

@@ -221,9 +221,9 @@ struct Settings {
   int samples = 1;                // a pixel, [1, kMaxSamples]
   int max_depth = 5;              // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
-  std::optional<Colour> ambient;          // ambient light; the background where absent
-  double exposure = 1.0;                  // scales every light but the ambient one, > 0
-  Transfer transfer = Transfer::kLinear;  // of colours read and of 8-bit pictures written
+  std::optional<Colour> ambient;        // ambient light; the background where absent
+  double exposure = 1.0;                // scales every light but the ambient one, > 0
+  Transfer transfer = Transfer::kSrgb;  // of pictures of bytes; colours here are linear
 };
 
 struct Scene {
