@@ -12,30 +12,71 @@
 #include "simd/streams.h"
 #include "simd/tree.h"
 #include "src/bvh/geometry_data.h"
+#include "src/bvh/geometry_scale.h"
+#include "src/bvh/primitive_index.h"
 
 namespace sheaf {
 
-// The objects of a GeometryInput as flat arrays.
-struct FlatInput {
-  GeometryArrays<float> arrays;
-  std::vector<std::uint32_t> first;  // primitive of each object; the last is the number of all
-  std::uint32_t never_hit = 0;
+// The objects of a GeometryInput as flat arrays, in the user's numbers.
+template <typename Real>
+struct FlatInputOf {
+  GeometryArrays<Real> arrays;
+  std::vector<std::uint32_t> first;           // primitive of each object; the last: number of all
+  std::vector<std::uint32_t> first_triangle;  // of each object, among triangles
+  std::uint32_t never_hit = 0, skipped = 0;
+  TriangleSizes sizes;
 };
+using FlatInput = FlatInputOf<float>;
+
+// What a Geometry owns. The arrays are dropped, but for normals: the tree holds all that rays need.
+template <typename Real>
+struct GeometryOf<Real>::Data {
+  Tree<Real> tree;  // of coordinates times scale
+  TreeView<Real> view{};
+  Real scale = 1;                                // a power of two
+  std::vector<std::uint32_t> first{0};           // see FlatInputOf
+  std::vector<std::uint32_t> first_triangle{0};  // likewise
+  std::uint32_t never_hit = 0, skipped = 0;
+  AlignedArray<Real> normal[3][3];  // by triangle; empty where no mesh has any
+  PrimitiveIndex<Real> index;       // made at its first use
+};
+
+// Multiplies all lengths by the power of two that triangles are hit at, which it returns; marks and
+// counts what no ray can hit there.
+template <typename Real>
+Real Rescale(FlatInputOf<Real>& flat);
 
 struct GeometryAccess {
   // Primitives of any kind but triangles, whose numbers are vertices and indices.
   static void Add(GeometryInput& input, PrimitiveKind kind, std::span<const float> fields);
 
   // Fails as Geometry::Build does.
-  static Result<FlatInput> Flatten(const GeometryInput& input, int threads);
+  template <typename Real>
+  static Result<FlatInputOf<Real>> FlattenTo(const GeometryInput& input,
+                                             const BuildOptions& options);
+  static Result<FlatInput> Flatten(const GeometryInput& input, int threads) {
+    return FlattenTo<float>(input, {.threads = threads});
+  }
 
-  static const TreeView<float>& TreeOf(const Geometry& geometry);
+  template <typename Real>
+  using Data = typename GeometryOf<Real>::Data;
+  template <typename Real>
+  static const Data<Real>& DataOf(const GeometryOf<Real>& geometry) {
+    return geometry.data();
+  }
+  // In the numbers that rays are traced in: the user's times ScaleOf.
+  template <typename Real>
+  static const TreeView<Real>& TreeOf(const GeometryOf<Real>& geometry) {
+    return geometry.data().view;
+  }
+  template <typename Real>
+  static Real ScaleOf(const GeometryOf<Real>& geometry) {
+    return geometry.data().scale;
+  }
 };
 
 // The same pointers in the kernels' terms, and back.
-RayView<float> ViewOf(const RayArrays& rays);
 RayArrays ArraysOf(const RayView<float>& rays);
-RayIntervals<float> IntervalsOf(const TraceInterval& interval);
 TraceInterval IntervalOf(const RayIntervals<float>& intervals);
 
 static_assert(static_cast<std::uint32_t>(PrimitiveKind::kSphere) == 1);  // as in GeometryInput

@@ -38,6 +38,8 @@ class GeometryArrays {
   }
 
   std::uint32_t count(PrimitiveKind kind) const { return counts_[kind]; }
+  // The field of all primitives of a kind, by its place in ForEachField.
+  Real* field(PrimitiveKind kind, std::size_t k) { return kinds_[IndexOf(kind)].fields[k].data(); }
   std::uint32_t* ids(PrimitiveKind kind) { return kinds_[IndexOf(kind)].id.data(); }
   GeometryView<Real> view() const;
 

@@ -12,31 +12,38 @@
 
 namespace sheaf::bvh {
 
-inline bool AreFinite(const float* x, int count) {
-  return std::all_of(x, x + count, [](float value) { return std::isfinite(value); });
+template <typename Real>
+bool AreFinite(const Real* x, std::size_t count) {
+  return std::all_of(x, x + count, [](Real value) { return std::isfinite(value); });
 }
 
 // The rules of a kind. They take the fields of one primitive, in the order of its arrays'
 // ForEachField.
 //   Fault: "", or what is wrong with numbers that a user gave.
 //   IsHittable: false for a triangle without area, a sphere or disk of radius 0: what no ray may
-//   hit. kMarkedField: which is NaN in the arrays of what is not hittable. ExactBounds: along an
-//   axis, of finite fields, rounded outward.
+//   hit. kMarkedField: which is NaN in the arrays of what is not hittable. kLengths: so many of the
+//   fields, the first ones, are lengths. ExactBounds: along an axis, of finite fields, rounded
+//   outward.
 template <PrimitiveKind kKind>
 struct Rules;
 
 template <>
 struct Rules<PrimitiveKind::kTriangle> {
-  static constexpr int kMarkedField = 0;
+  static constexpr int kMarkedField = 0, kLengths = 9;
 
-  static const char* Fault(const float* vertices) {
+  template <typename Real>
+  static const char* Fault(const Real* vertices) {
     return AreFinite(vertices, 9) ? "" : "a coordinate is not finite";
   }
   template <typename Real>
   static bool IsHittable(const Real* vertices) {
     double exact[3][3];
-    for (int i = 0; i < 9; ++i) exact[i / 3][i % 3] = static_cast<double>(vertices[i]);
+    Widen(vertices, exact);
     return HasArea(exact);
+  }
+  template <typename Real>
+  static void Widen(const Real* vertices, double (&exact)[3][3]) {
+    for (int i = 0; i < 9; ++i) exact[i / 3][i % 3] = static_cast<double>(vertices[i]);
   }
   template <typename Real>
   static void ExactBounds(const Real* vertices, int axis, float& lower, float& upper) {
@@ -48,9 +55,10 @@ struct Rules<PrimitiveKind::kTriangle> {
 
 template <>
 struct Rules<PrimitiveKind::kSphere> {
-  static constexpr int kMarkedField = 3;
+  static constexpr int kMarkedField = 3, kLengths = 4;
 
-  static const char* Fault(const float* sphere) {
+  template <typename Real>
+  static const char* Fault(const Real* sphere) {
     return !AreFinite(sphere, 3)       ? "a coordinate is not finite"
            : !std::isfinite(sphere[3]) ? "the radius is not finite"
            : sphere[3] < 0             ? "the radius is negative"
@@ -71,9 +79,10 @@ struct Rules<PrimitiveKind::kSphere> {
 
 template <>
 struct Rules<PrimitiveKind::kDisk> {
-  static constexpr int kMarkedField = 3;
+  static constexpr int kMarkedField = 3, kLengths = 4;
 
-  static const char* Fault(const float* disk) {
+  template <typename Real>
+  static const char* Fault(const Real* disk) {
     return !AreFinite(disk, 3)                            ? "a coordinate is not finite"
            : !std::isfinite(disk[3])                      ? "the radius is not finite"
            : disk[3] < 0                                  ? "the radius is negative"
@@ -102,11 +111,16 @@ struct Rules<PrimitiveKind::kDisk> {
   }
 };
 
+template <PrimitiveKind kKind, typename Real>
+void MarkNeverHit(Real* fields) {
+  fields[Rules<kKind>::kMarkedField] = std::numeric_limits<Real>::quiet_NaN();
+}
+
 // Marks a primitive that no ray can hit; returns whether one can.
 template <PrimitiveKind kKind, typename Real>
 bool MarkUnlessHittable(Real* fields) {
   const bool is_hittable = Rules<kKind>::IsHittable(fields);
-  if (!is_hittable) fields[Rules<kKind>::kMarkedField] = std::numeric_limits<Real>::quiet_NaN();
+  if (!is_hittable) MarkNeverHit<kKind>(fields);
   return is_hittable;
 }
 

@@ -1,33 +1,40 @@
-// From arrays of any length to the kernels, which take whole vectors: all but the last few rays in
-// place, the rest through a padded copy.
+// From arrays of any length, stride and scale to the kernels, which take whole vectors: in place
+// what can be, the last few rays and whatever is not in plain arrays through a padded copy.
 #include <algorithm>
 #include <cstddef>
-#include <string>
-#include <utility>
 
 #include "sheaf/geometry.h"
 #include "simd/kernels.h"
 #include "simd/query.h"
 #include "simd/streams.h"
+#include "src/bvh/check_arrays.h"
 #include "src/bvh/geometry_access.h"
 #include "src/bvh/ray_batches.h"
+#include "src/bvh/ray_block.h"
 #include "src/scalar/trace_tree.h"
 
 namespace sheaf {
 namespace {
 
-constexpr std::uint32_t kChunk = 256;  // rays at a time where a result is not wanted
+constexpr std::uint32_t kChunk = 256;   // rays at a time where a result is not wanted
+constexpr std::uint32_t kBlock = 256;   // rays that are gathered, or whose hits are, at a time
+static_assert(kBlock <= kChunk);
 
-RayView<float> Skip(RayView<float> rays, std::size_t first) {
-  ForEachField(rays, [&](auto& field) {
-    if (field) field += first;
-  });
+template <typename T>
+T* Skip(T* array, std::size_t first) {
+  return array ? array + first : nullptr;
+}
+
+template <typename Real>
+RayView<Real> Skip(RayView<Real> rays, std::size_t first) {
+  ForEachField(rays, [&](auto& field) { field = Skip(field, first); });
   return rays;
 }
 
-RayIntervals<float> Skip(RayIntervals<float> intervals, std::size_t first) {
-  if (intervals.t_min) intervals.t_min += first;
-  if (intervals.t_max) intervals.t_max += first;
+template <typename Real>
+RayIntervals<Real> Skip(RayIntervals<Real> intervals, std::size_t first) {
+  intervals.t_min = Skip(intervals.t_min, first);
+  intervals.t_max = Skip(intervals.t_max, first);
   return intervals;
 }
 
@@ -45,49 +52,20 @@ Coherence CoherenceOf(RayCoherence coherence) {
   return Coherence::kUnknown;
 }
 
-template <typename T>
-T* Skip(T* array, std::size_t first) {
-  return array ? array + first : nullptr;
+template <typename Real>
+RayView<Real> ViewOf(const RayArraysOf<Real>& rays) {
+  return {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
+          rays.direction_y, rays.direction_z, rays.source};
 }
 
-// The rays of one vector, of which `count` are copied; the lanes beyond have no direction.
-class PaddedRays {
- public:
-  PaddedRays(const RayView<float>& rays, const RayIntervals<float>& intervals, std::uint32_t count)
-      : view_{}, intervals_(intervals) {
-    std::uint32_t slot = 0;
-    ForEachField(view_, rays, [&](auto& to, const auto& from) {
-      if (!from) return;
-      auto* const lanes = Lanes(from, slot++);
-      std::copy(from, from + count, lanes);
-      to = lanes;
-    });
-    CopyInterval(count, t_min_, intervals_.t_min);
-    CopyInterval(count, t_max_, intervals_.t_max);
-  }
+template <typename Real>
+RayIntervals<Real> IntervalsOf(const TraceIntervalOf<Real>& interval) {
+  return {interval.t_min, interval.t_max, interval.all_t_min, interval.all_t_max};
+}
 
-  const RayView<float>& view() const { return view_; }
-  const RayIntervals<float>& intervals() const { return intervals_; }
-
- private:
-  float* Lanes(const float*, std::uint32_t slot) { return numbers_[slot]; }
-  std::uint32_t* Lanes(const std::uint32_t*, std::uint32_t) { return source_; }
-
-  static void CopyInterval(std::uint32_t count, float* lanes, const float*& array) {
-    if (!array) return;
-    std::copy(array, array + count, lanes);
-    array = lanes;
-  }
-
-  float numbers_[6][kMaxLanes] = {};
-  std::uint32_t source_[kMaxLanes] = {};
-  float t_min_[kMaxLanes] = {}, t_max_[kMaxLanes] = {};
-  RayView<float> view_;
-  RayIntervals<float> intervals_;
-};
-
-scalar::Ray<float> RayAt(const RayView<float>& rays, const RayIntervals<float>& intervals,
-                         std::uint32_t i) {
+template <typename Real>
+scalar::Ray<Real> RayAt(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
+                        std::uint32_t i) {
   return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
           {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
           rays.source ? rays.source[i] : kNoPrimitive,
@@ -96,11 +74,12 @@ scalar::Ray<float> RayAt(const RayView<float>& rays, const RayIntervals<float>& 
 }
 
 // The baseline, as the kernels are called.
-void ScalarClosest(const TreeView<float>& tree, const RayView<float>& rays,
-                   const RayIntervals<float>& intervals, std::uint32_t count,
-                   Coherence /*coherence*/, const HitOutput<float>& hits) {
+template <typename Real>
+void ScalarClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
+                   const RayIntervals<Real>& intervals, std::uint32_t count,
+                   Coherence /*coherence*/, const HitOutput<Real>& hits) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const scalar::Hit<float> hit = scalar::TraceClosest(tree, RayAt(rays, intervals, i));
+    const scalar::Hit<Real> hit = scalar::TraceClosest(tree, RayAt(rays, intervals, i));
     hits.t[i] = hit.t;
     hits.u[i] = hit.u;
     hits.v[i] = hit.v;
@@ -108,36 +87,35 @@ void ScalarClosest(const TreeView<float>& tree, const RayView<float>& rays,
   }
 }
 
-void ScalarOccluded(const TreeView<float>& tree, const RayView<float>& rays,
-                    const RayIntervals<float>& intervals, std::uint32_t count,
+template <typename Real>
+void ScalarOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
+                    const RayIntervals<Real>& intervals, std::uint32_t count,
                     Coherence /*coherence*/, std::uint32_t* occluded) {
   for (std::uint32_t i = 0; i < count; ++i) {
     occluded[i] = scalar::TraceOccluded(tree, RayAt(rays, intervals, i)) ? 1 : 0;
   }
 }
 
+template <typename Real>
 struct TraceKernels {
-  TraceClosestKernel<float>* closest;
-  TraceOccludedKernel<float>* occluded;
+  TraceClosestKernel<Real>* closest;
+  TraceOccludedKernel<Real>* occluded;
 };
 
-TraceKernels KernelsOf(Target target) {
-  if (target.is_scalar()) return {&ScalarClosest, &ScalarOccluded};
+template <typename Real>
+TraceKernels<Real> KernelsOf(Target target) {
+  if (target.is_scalar()) return {&ScalarClosest<Real>, &ScalarOccluded<Real>};
   // Looked up once: a batch may be one ray.
-  static const Kernels<float> best = StrictKernels<float>(0);
+  static const Kernels<Real> best = StrictKernels<Real>(0);
   if (target == Target()) return {best.trace_closest, best.trace_occluded};
-  const Kernels<float> kernels = StrictKernels<float>(target.id());
+  const Kernels<Real> kernels = StrictKernels<Real>(target.id());
   return {kernels.trace_closest, kernels.trace_occluded};
 }
 
-struct HitScratch {
-  float t[kChunk], u[kChunk], v[kChunk];
-  std::uint32_t primitive[kChunk];
-};
-
 // Writes the objects of `count` primitives; neighbours tend to share one.
-void FindObjects(const Geometry& geometry, const std::uint32_t* primitive, std::uint32_t count,
-                 std::uint32_t* object) {
+template <typename Real>
+void FindObjects(const GeometryOf<Real>& geometry, const std::uint32_t* primitive,
+                 std::uint32_t count, std::uint32_t* object) {
   std::uint32_t begin = 0, end = 0, current = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t id = primitive[i];
@@ -150,106 +128,136 @@ void FindObjects(const Geometry& geometry, const std::uint32_t* primitive, std::
   }
 }
 
-// At most kChunk rays, and whole vectors of them.
-void TraceChunk(const Geometry& geometry, const RayView<float>& rays,
-                const RayIntervals<float>& intervals, Coherence coherence, std::uint32_t count,
-                const HitArrays& hits, const TraceKernels& kernels, HitScratch& scratch) {
-  const HitOutput<float> output = {hits.t ? hits.t : scratch.t, hits.u ? hits.u : scratch.u,
-                                   hits.v ? hits.v : scratch.v,
-                                   hits.primitive ? hits.primitive : scratch.primitive};
-  kernels.closest(GeometryAccess::TreeOf(geometry), rays, intervals, count, coherence, output);
-  if (hits.object) FindObjects(geometry, output.primitive, count, hits.object);
-}
-
-Error NullArray(const char* name) { return {ErrorKind::kUsage, std::string(name) + " is null"}; }
-
-// Names the array that is missing.
-Status CheckRays(const RayArrays& rays, std::size_t count) {
-  if (count == 0) return Done{};
-  const std::pair<const char*, const float*> arrays[] = {
-      {"origin_x", rays.origin_x},       {"origin_y", rays.origin_y},
-      {"origin_z", rays.origin_z},       {"direction_x", rays.direction_x},
-      {"direction_y", rays.direction_y}, {"direction_z", rays.direction_z}};
-  for (const auto& [name, array] : arrays) {
-    if (!array) return NullArray(name);
+// Hands rays to `in_place` or to `apart`, as f(rays, intervals, first, count): at most `step` at a
+// time in place, whole vectors of them; at most kBlock that were copied, for which only `count`
+// results may be written in place.
+template <typename Real, typename InPlace, typename Apart>
+void ForEachPart(const RayArraysOf<Real>& rays, const TraceIntervalOf<Real>& interval,
+                 std::size_t count, Real scale, std::size_t step, const InPlace& in_place,
+                 const Apart& apart) {
+  if (rays.stride != 0 || interval.stride != 0 || scale != 1) {
+    RayBlock<Real, kBlock> block;
+    ForEachBatch(count, kBlock, [&](std::size_t first, std::uint32_t n) {
+      block.Take(rays, interval, first, n, scale);
+      apart(block.view(), block.intervals(), first, n);
+    });
+    return;
   }
-  return Done{};
+  const RayView<Real> view = ViewOf(rays);
+  const RayIntervals<Real> intervals = IntervalsOf(interval);
+  const std::size_t whole = count / kMaxLanes * kMaxLanes;
+  ForEachBatch(whole, step, [&](std::size_t first, std::uint32_t n) {
+    in_place(Skip(view, first), Skip(intervals, first), first, n);
+  });
+  if (whole == count) return;
+  const auto rest = static_cast<std::uint32_t>(count - whole);
+  RayBlock<Real, kMaxLanes> block;
+  block.Take(rays, interval, whole, rest, scale);
+  apart(block.view(), block.intervals(), whole, rest);
 }
+
+// Nearest hits of parts of a batch.
+template <typename Real>
+class ClosestTracer {
+ public:
+  using View = const RayView<Real>&;
+  using Intervals = const RayIntervals<Real>&;
+
+  ClosestTracer(const GeometryOf<Real>& geometry, const HitArraysOf<Real>& hits,
+                const TraceOptionsOf<Real>& options)
+      : geometry_(geometry),
+        hits_(hits),
+        kernel_(KernelsOf<Real>(options.target).closest),
+        coherence_(CoherenceOf(options.coherence)) {}
+
+  // Writes what is wanted where it is wanted, and what is not aside.
+  void InPlace(View rays, Intervals intervals, std::size_t first, std::uint32_t n) {
+    const auto at = [&](auto* array, auto* aside) { return array ? array + first : aside; };
+    const HitOutput<Real> output = {at(hits_.t, t_), at(hits_.u, u_), at(hits_.v, v_),
+                                    at(hits_.primitive, primitive_)};
+    kernel_(GeometryAccess::TreeOf(geometry_), rays, intervals, n, coherence_, output);
+    if (hits_.object) FindObjects(geometry_, output.primitive, n, hits_.object + first);
+  }
+
+  // Writes aside, then copies what is wanted. At most kBlock rays.
+  void Apart(View rays, Intervals intervals, std::size_t first, std::uint32_t n) {
+    kernel_(GeometryAccess::TreeOf(geometry_), rays, intervals, n, coherence_,
+            {t_, u_, v_, primitive_});
+    Scatter(t_, n, hits_.t, hits_.stride, first);
+    Scatter(u_, n, hits_.u, hits_.stride, first);
+    Scatter(v_, n, hits_.v, hits_.stride, first);
+    Scatter(primitive_, n, hits_.primitive, hits_.stride, first);
+    if (!hits_.object) return;
+    FindObjects(geometry_, primitive_, n, object_);
+    Scatter(object_, n, hits_.object, hits_.stride, first);
+  }
+
+ private:
+  const GeometryOf<Real>& geometry_;
+  const HitArraysOf<Real>& hits_;
+  TraceClosestKernel<Real>* kernel_;
+  Coherence coherence_;
+  Real t_[kChunk], u_[kChunk], v_[kChunk];
+  std::uint32_t primitive_[kChunk], object_[kBlock];
+};
 
 }  // namespace
-
-RayView<float> ViewOf(const RayArrays& rays) {
-  return {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
-          rays.direction_y, rays.direction_z, rays.source};
-}
 
 RayArrays ArraysOf(const RayView<float>& rays) {
   return {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
           rays.direction_y, rays.direction_z, rays.source};
 }
 
-RayIntervals<float> IntervalsOf(const TraceInterval& interval) {
-  return {interval.t_min, interval.t_max, interval.all_t_min, interval.all_t_max};
-}
-
 TraceInterval IntervalOf(const RayIntervals<float>& intervals) {
   return {intervals.t_min, intervals.t_max, intervals.all_t_min, intervals.all_t_max};
 }
 
-Status TraceClosest(const Geometry& geometry, const RayArrays& given, std::size_t count,
-                    const HitArrays& hits, const TraceOptions& options) {
-  if (Status checked = CheckRays(given, count); !checked) return checked;
-  HitScratch scratch;
-  const TraceKernels kernels = KernelsOf(options.target);
-  const RayView<float> rays = ViewOf(given);
-  const RayIntervals<float> intervals = IntervalsOf(options.interval);
-  const Coherence coherence = CoherenceOf(options.coherence);
-  const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
-  const std::size_t whole = count / kMaxLanes * kMaxLanes;
-  ForEachBatch(whole, has_all ? kMaxBatch : kChunk, [&](std::size_t first, std::uint32_t n) {
-    const HitArrays part = {Skip(hits.t, first), Skip(hits.primitive, first),
-                            Skip(hits.object, first), Skip(hits.u, first), Skip(hits.v, first)};
-    TraceChunk(geometry, Skip(rays, first), Skip(intervals, first), coherence, n, part, kernels,
-               scratch);
-  });
-  const auto rest = static_cast<std::uint32_t>(count - whole);
-  if (rest == 0) return Done{};
-  const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
-  std::uint32_t object[kMaxLanes];
-  TraceChunk(geometry, padded.view(), padded.intervals(), coherence, rest,
-             {.object = hits.object ? object : nullptr}, kernels, scratch);
-  const auto copy = [&](const auto* from, auto* to) {
-    if (to) std::copy(from, from + rest, to + whole);
+template <typename Real>
+Status TraceClosest(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
+                    std::size_t count, const HitArraysOf<Real>& hits,
+                    const TraceOptionsOf<Real>& options) {
+  if (Status checked = CheckRays(rays, count); !checked) return checked;
+  ClosestTracer<Real> tracer(geometry, hits, options);
+  const auto apart = [&](auto&&... part) { tracer.Apart(part...); };
+  const auto in_place = [&](auto&&... part) {
+    hits.stride == 0 ? tracer.InPlace(part...) : tracer.Apart(part...);
   };
-  copy(scratch.t, hits.t);
-  copy(scratch.u, hits.u);
-  copy(scratch.v, hits.v);
-  copy(scratch.primitive, hits.primitive);
-  copy(object, hits.object);
+  const bool has_all = hits.t && hits.u && hits.v && hits.primitive;
+  const std::size_t step = hits.stride != 0 ? kBlock : has_all ? kMaxBatch : kChunk;
+  ForEachPart(rays, options.interval, count, GeometryAccess::ScaleOf(geometry), step, in_place,
+              apart);
   return Done{};
 }
 
-Status TraceOccluded(const Geometry& geometry, const RayArrays& given, std::size_t count,
-                     std::uint32_t* occluded, const TraceOptions& options) {
-  if (Status checked = CheckRays(given, count); !checked) return checked;
+template <typename Real>
+Status TraceOccluded(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
+                     std::size_t count, std::uint32_t* occluded,
+                     const TraceOptionsOf<Real>& options) {
+  if (Status checked = CheckRays(rays, count); !checked) return checked;
   if (count > 0 && !occluded) return NullArray("occluded");
-  const TraceKernels kernels = KernelsOf(options.target);
-  const TreeView<float>& tree = GeometryAccess::TreeOf(geometry);
-  const RayView<float> rays = ViewOf(given);
-  const RayIntervals<float> intervals = IntervalsOf(options.interval);
+  TraceOccludedKernel<Real>* const kernel = KernelsOf<Real>(options.target).occluded;
+  const TreeView<Real>& tree = GeometryAccess::TreeOf(geometry);
   const Coherence coherence = CoherenceOf(options.coherence);
-  const std::size_t whole = count / kMaxLanes * kMaxLanes;
-  ForEachBatch(whole, kMaxBatch, [&](std::size_t first, std::uint32_t n) {
-    kernels.occluded(tree, Skip(rays, first), Skip(intervals, first), n, coherence,
-                     occluded + first);
-  });
-  const auto rest = static_cast<std::uint32_t>(count - whole);
-  if (rest == 0) return Done{};
-  const PaddedRays padded(Skip(rays, whole), Skip(intervals, whole), rest);
-  std::uint32_t lanes[kMaxLanes];
-  kernels.occluded(tree, padded.view(), padded.intervals(), rest, coherence, lanes);
-  std::copy(lanes, lanes + rest, occluded + whole);
+  ForEachPart(
+      rays, options.interval, count, GeometryAccess::ScaleOf(geometry), kMaxBatch,
+      [&](const auto& part, const auto& intervals, std::size_t first, std::uint32_t n) {
+        kernel(tree, part, intervals, n, coherence, occluded + first);
+      },
+      [&](const auto& part, const auto& intervals, std::size_t first, std::uint32_t n) {
+        std::uint32_t lanes[kBlock];
+        kernel(tree, part, intervals, n, coherence, lanes);
+        std::copy(lanes, lanes + n, occluded + first);
+      });
   return Done{};
 }
+
+template Status TraceClosest(const GeometryOf<float>&, const RayArraysOf<float>&, std::size_t,
+                             const HitArraysOf<float>&, const TraceOptionsOf<float>&);
+template Status TraceClosest(const GeometryOf<double>&, const RayArraysOf<double>&, std::size_t,
+                             const HitArraysOf<double>&, const TraceOptionsOf<double>&);
+template Status TraceOccluded(const GeometryOf<float>&, const RayArraysOf<float>&, std::size_t,
+                              std::uint32_t*, const TraceOptionsOf<float>&);
+template Status TraceOccluded(const GeometryOf<double>&, const RayArraysOf<double>&, std::size_t,
+                              std::uint32_t*, const TraceOptionsOf<double>&);
 
 }  // namespace sheaf

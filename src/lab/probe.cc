@@ -192,13 +192,18 @@ std::vector<Hit> TraceEverywhere(Report& report, const Shapes& shapes,
     report.Expect(false, geometry.error().message);
     return std::vector<Hit>(given.size());
   }
-  const FlatShapes flat(shapes);
+  // At the geometry's own scale, as its tree is.
+  FlatInput flat = std::move(GeometryAccess::Flatten(InputOf(shapes), 1)).value();
+  const float scale = Rescale(flat);
   const FlatRays flat_rays(rays);
   std::vector<Hit> expected;
   for (const Ray& ray : rays) {
-    const Hit by_tree = scalar::TraceClosest(GeometryAccess::TreeOf(geometry.value()), ray);
-    expected.push_back(oracle == Oracle::kTreeOnly ? by_tree
-                                                   : scalar::TraceClosest(flat.view(), ray));
+    Ray scaled = ray;
+    scaled.origin = ray.origin * scale;
+    scaled.direction = ray.direction * scale;
+    const Hit by_tree = scalar::TraceClosest(GeometryAccess::TreeOf(geometry.value()), scaled);
+    expected.push_back(
+        oracle == Oracle::kTreeOnly ? by_tree : scalar::TraceClosest(flat.arrays.view(), scaled));
     report.Expect(SameHit(by_tree, expected.back()),
                   "the baseline's tree differs from every primitive", &ray);
   }
