@@ -138,7 +138,8 @@ TEST_CASE("a triangle too small beside another is counted as never hit") {
       vertices.insert(vertices.end(), {-s, -s, z, s, -s, z, 0, s, z});
     }
     GeometryInput input;
-    input.AddTriangles(vertices, std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
+    const std::vector<std::uint32_t> indices = {0, 1, 2, 3, 4, 5};
+    input.AddTriangles(vertices, indices);
     const Geometry geometry = std::move(Geometry::Build(input)).value();
     CHECK(geometry.statistics().triangles == mixed.triangles);
     CHECK(geometry.statistics().never_hit == 2 - mixed.triangles);

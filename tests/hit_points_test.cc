@@ -203,7 +203,8 @@ TEST_CASE("rays that go on from the diagonal of a square do not meet its other h
 
 TEST_CASE("a ray goes on into a sphere and out again") {
   GeometryInput input;
-  input.AddSpheres(std::vector<float>{0.3f, -1e5f, 0.1f, 2});
+  const std::vector<float> sphere = {0.3f, -1e5f, 0.1f, 2};
+  input.AddSpheres(sphere);
   const Geometry geometry = std::move(Geometry::Build(input)).value();
   RayLists<float> rays;
   rays.Add({{0.4f, -1e5f + 5, 0.2f}, {0.01f, -1, 0.02f}});
@@ -263,7 +264,8 @@ TEST_CASE("what hit points cannot be found of is named") {
   CHECK(FindHitPoints(geometry, {}, {}, 0, {}).ok());
 
   GeometryInput short_normals, odd_normals;
-  short_normals.AddTriangles(objects.vertices, objects.indices, std::vector<float>(9));
+  const std::vector<float> nine(9);
+  short_normals.AddTriangles(objects.vertices, objects.indices, nine);
   CHECK(Geometry::Build(short_normals).error().message ==
         "object 0: 9 numbers of normals for 36 of vertices");
   std::vector<float> normals = objects.normals;

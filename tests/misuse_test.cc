@@ -211,7 +211,8 @@ std::string LastWords(Body body) {
 
 TEST_CASE("a value that is not there ends the program with the error's message") {
   GeometryInput input;
-  input.AddSpheres(std::vector<float>{0, 0, 0, -1});
+  const std::vector<float> inside_out = {0, 0, 0, -1};
+  input.AddSpheres(inside_out);
   const Result<Geometry> failed = Geometry::Build(input);
   REQUIRE_FALSE(failed.ok());
   const std::string words =
@@ -245,8 +246,9 @@ TEST_CASE("owners that were moved from are empty") {
 
 TEST_CASE("a ray that starts on a triangle does not hit it at 0") {
   GeometryInput input;
-  input.AddTriangles(std::vector<float>{-1, -1, 0, 1, -1, 0, 0, 1, 0},
-                     std::vector<std::uint32_t>{0, 1, 2});
+  const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const std::vector<std::uint32_t> triangle = {0, 1, 2};
+  input.AddTriangles(corners, triangle);
   const Geometry geometry = std::move(Geometry::Build(input)).value();
   const float zero[1] = {0}, slope[1] = {0.1f}, one[1] = {1};
   ForEachTarget([&](Target target) {

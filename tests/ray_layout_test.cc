@@ -130,8 +130,9 @@ TEST_CASE_TEMPLATE("rays as structures have the hits of rays as arrays", Real, f
 }
 
 TEST_CASE("structures may be packed") {
+  const std::vector<float> sphere = {0, 0, 0, 1};
   GeometryInput input;
-  input.AddSpheres(std::vector<float>{0, 0, 0, 1});
+  input.AddSpheres(sphere);
   const Geometry geometry = std::move(Geometry::Build(input)).value();
   constexpr std::size_t kStride = 27;
   std::vector<std::byte> bytes(kStride * 40 + 1), out(kStride * 40 + 1);
@@ -262,7 +263,8 @@ TEST_CASE("primitives that are not finite are refused by name, or skipped and co
   }
   // What is wrong otherwise stays an error.
   GeometryInput negative;
-  negative.AddSpheres(std::vector<float>{0, 0, 0, -1});
+  const std::vector<float> inside_out = {0, 0, 0, -1};
+  negative.AddSpheres(inside_out);
   CHECK_FALSE(Geometry::Build(negative, {.not_finite = NotFinite::kSkipped}).ok());
 }
 
