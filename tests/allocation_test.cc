@@ -88,8 +88,10 @@ TEST_CASE("a build that finds no memory throws and leaves everything as it was")
       geometry = std::move(Geometry::Build(input, threads)).value();
     };
     left = -1;
-    build();  // what the threads themselves keep
+    // What the threads, and an empty geometry, keep for good.
+    build();
     geometry = Geometry();
+    CHECK(geometry.object_count() == 0);
     bool was_half_built = false;
     const int failures = FailEverywhere(1, [&] {
       was_half_built |= geometry.object_count() != 0;

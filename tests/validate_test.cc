@@ -33,7 +33,8 @@ Scene SoundScene() {
                    {"wall", RandomMesh(random, 3), 0},
                    {"", Disk{}, 0}};
   scene.lights = {{"lamp", PointLight{{1, 2, 3}, {}, Cone{}}}, {"sun", DirectionalLight{}}};
-  scene.cameras = {{"front", {0, 0, 5}, {0, 0, 0}}, {"wide", {0, 0, 5}, {0, 0, 0}}};
+  scene.cameras = {{"front", {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {}},
+                   {"wide", {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {}}};
   scene.cameras[1].projection = Fisheye{};
   scene.views = {{"both", {0, 1}}};
   scene.settings.width = scene.settings.height = 4;
