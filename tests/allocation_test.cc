@@ -74,7 +74,8 @@ TEST_CASE("a build that finds no memory throws and leaves everything as it was")
   std::vector<std::uint32_t> indices;
   for (std::uint32_t i = 0; i < 3 * 3000; ++i) {
     const auto x = static_cast<float>(i * 7919 % 1000);
-    vertices.insert(vertices.end(), {x, static_cast<float>(i % 97), static_cast<float>(i % 31)});
+    vertices.insert(vertices.end(),
+                    {x, static_cast<float>(i * i % 97), static_cast<float>(i % 31)});
     indices.push_back(i);
     spheres.insert(spheres.end(), {x, 0, 1, 1});
   }
