@@ -98,8 +98,8 @@ Status ConvertScene(const ConvertRequest& request) {
   Scene& scene = opened.value().scene;
   const TextureFiles textures = NameTextures(scene, request.output);
   std::vector<Output> outputs = {{"-o", request.output}};
-  for (const auto& [image, name] : textures) {
-    outputs.push_back({"-o", PathBeside(request.output, name)});
+  for (const auto& [image, file] : textures) {
+    outputs.push_back({"-o", PathBeside(request.output, file.name)});
   }
   const Status apart = CheckOutputs(outputs, opened.value().files);
   if (!apart) return apart;

@@ -16,8 +16,8 @@
 namespace sheaf {
 namespace {
 
-constexpr std::uint32_t kChunk = 256;   // rays at a time where a result is not wanted
-constexpr std::uint32_t kBlock = 256;   // rays that are gathered, or whose hits are, at a time
+constexpr std::uint32_t kChunk = 256;  // rays at a time where a result is not wanted
+constexpr std::uint32_t kBlock = 256;  // rays that are gathered, or whose hits are, at a time
 static_assert(kBlock <= kChunk);
 
 template <typename T>
