@@ -127,7 +127,8 @@ struct Mixed {
 
 TEST_CASE("a triangle too small beside another is counted as never hit") {
   for (const Mixed& mixed : {Mixed{0x1p80f, 1, 2},
-                             {0x1p100f, 1, 1},
+                             {0x1p100f, 1, 2},
+                             {0x1p120f, 1, 1},
                              {0x1p60f, 0x1p-20f, 2},
                              {0x1p30f, 0x1p-40f, 2},
                              {0x1p-60f, 0x1p-110f, 2}}) {

@@ -120,8 +120,9 @@ std::uint32_t CheckEverywhere(const GeometryInput& input, const Rays& rays) {
       std::vector<std::uint32_t> primitive(n), occluded(n);
       TraceClosest(built.value(), rays.arrays(), n,
                    {.t = t.data(), .primitive = primitive.data(), .u = u.data(), .v = v.data()},
-                   options);
-      TraceOccluded(built.value(), rays.arrays(), n, occluded.data(), options);
+                   options)
+          .value();
+      TraceOccluded(built.value(), rays.arrays(), n, occluded.data(), options).value();
       std::uint32_t wrong = 0;
       for (std::uint32_t i = 0; i < n; ++i) {
         wrong += !SameBits(t[i], want[i].t) || primitive[i] != want[i].primitive ||
@@ -228,8 +229,8 @@ void* TraceOnSmallStack(void* argument) {
   const std::uint32_t n = job.rays->count();
   std::vector<float> t(n);
   std::vector<std::uint32_t> occluded(n);
-  TraceClosest(*job.geometry, job.rays->arrays(), n, {.t = t.data()}, job.options);
-  TraceOccluded(*job.geometry, job.rays->arrays(), n, occluded.data(), job.options);
+  TraceClosest(*job.geometry, job.rays->arrays(), n, {.t = t.data()}, job.options).value();
+  TraceOccluded(*job.geometry, job.rays->arrays(), n, occluded.data(), job.options).value();
   return nullptr;
 }
 

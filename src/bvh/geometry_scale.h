@@ -14,12 +14,12 @@
 
 namespace sheaf {
 
-// Exponents of two. Rays start up to 2^26 times as far away as kReach, whose products still fit.
+// Exponents of two. Rays start up to 2^5 times as far away as kReach, whose products still fit.
 template <typename Real>
 struct ScaleLimits;
 template <>
 struct ScaleLimits<float> {
-  static constexpr int kReach = 36;     // of coordinates at most; boxes hold up to 2^39
+  static constexpr int kReach = 56;     // of coordinates below
   static constexpr int kArea = -102;    // wanted of areas: down to grazing angles of 2^-24
   static constexpr int kNoArea = -125;  // an area below this is never hit
   static constexpr int kLargest = 64;   // of the scale itself, so that directions stay in range
@@ -29,6 +29,8 @@ struct ScaleLimits<double> {
   // So that surfaces too, which square areas, stay in range.
   static constexpr int kReach = 250, kArea = -500, kNoArea = -530, kLargest = 480;
 };
+
+inline constexpr int kBoxReach = 35;  // box tests hold up to 2^39
 
 // How large triangles are that can be hit.
 struct TriangleSizes {
@@ -55,9 +57,14 @@ int ScaleExponent(const TriangleSizes& sizes) {
   using Limits = ScaleLimits<Real>;
   if (sizes.reach == 0) return 0;
   const int size = std::ilogb(sizes.reach);
-  if (size >= Limits::kReach) return Limits::kReach - 1 - size;
-  if (size >= 0 || !(sizes.least_area < std::ldexp(1.0, Limits::kArea))) return 0;
-  const int missing = Limits::kArea - std::ilogb(sizes.least_area);
+  const bool is_small = sizes.least_area < std::ldexp(1.0, Limits::kArea);
+  const int missing = Limits::kArea - std::ilogb(std::min(sizes.least_area, 0x1p1000));
+  if (size >= Limits::kReach) {
+    // All the way to where box tests hold, unless small triangles would lose their areas there.
+    const int wanted = std::max(kBoxReach - size, (missing + 1) / 2);
+    return std::min(Limits::kReach - 1 - size, wanted);
+  }
+  if (size >= 0 || !is_small) return 0;
   return std::min({(missing + 1) / 2, -size, Limits::kLargest});
 }
 

@@ -17,7 +17,7 @@ namespace sheaf {
 namespace {
 
 constexpr std::uint32_t kChunk = 256;  // rays at a time where a result is not wanted
-constexpr std::uint32_t kBlock = 256;  // rays that are gathered, or whose hits are, at a time
+constexpr std::uint32_t kBlock = 128;  // rays that are gathered, or whose hits are, at a time
 static_assert(kBlock <= kChunk);
 
 template <typename T>
@@ -128,6 +128,19 @@ void FindObjects(const GeometryOf<Real>& geometry, const std::uint32_t* primitiv
   }
 }
 
+// Copies rays and hands them to `apart`, at most kBlock at a time. A function of its own, so that
+// only who needs the copies has them on its stack.
+template <typename Real, typename Apart>
+[[gnu::noinline]] void ForEachCopy(const RayArraysOf<Real>& rays,
+                                   const TraceIntervalOf<Real>& interval, std::size_t count,
+                                   Real scale, const Apart& apart) {
+  RayBlock<Real, kBlock> block;
+  ForEachBatch(count, kBlock, [&](std::size_t first, std::uint32_t n) {
+    block.Take(rays, interval, first, n, scale);
+    apart(block.view(), block.intervals(), first, n);
+  });
+}
+
 // Hands rays to `in_place` or to `apart`, as f(rays, intervals, first, count): at most `step` at a
 // time in place, whole vectors of them; at most kBlock that were copied, for which only `count`
 // results may be written in place.
@@ -136,12 +149,7 @@ void ForEachPart(const RayArraysOf<Real>& rays, const TraceIntervalOf<Real>& int
                  std::size_t count, Real scale, std::size_t step, const InPlace& in_place,
                  const Apart& apart) {
   if (rays.stride != 0 || interval.stride != 0 || scale != 1) {
-    RayBlock<Real, kBlock> block;
-    ForEachBatch(count, kBlock, [&](std::size_t first, std::uint32_t n) {
-      block.Take(rays, interval, first, n, scale);
-      apart(block.view(), block.intervals(), first, n);
-    });
-    return;
+    return ForEachCopy(rays, interval, count, scale, apart);
   }
   const RayView<Real> view = ViewOf(rays);
   const RayIntervals<Real> intervals = IntervalsOf(interval);

@@ -245,9 +245,9 @@ using HitArraysD = HitArraysOf<double>;
 // The nearest hit of each of `count` rays; of equal t the lowest primitive. Rays with a component
 // that is not finite, with no direction or with t_min > t_max miss. Rays with t_min < 0 or with
 // directions of odd length take a little longer; rays from further away than 5e11 are tested
-// against every primitive. Takes at most 64 KiB of stack, 32 more for rays with a stride or in
-// double. Fails with kUsage where an origin or a direction is null, before anything is written.
-// Safe to call from any number of threads at once.
+// against every primitive. Takes at most 64 KiB of stack where rays are arrays of floats. Fails
+// with kUsage where an origin or a direction is null, before anything is written. Safe to call from
+// any number of threads at once.
 template <typename Real>
 SHEAF_API Status TraceClosest(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
                               std::size_t count, const HitArraysOf<Real>& hits,
