@@ -1,4 +1,6 @@
 // RenderRows: bands have the bits of the whole picture; sinks that wait, fail, stop and throw.
+#include <oneapi/tbb/global_control.h>
+
 #include <algorithm>
 #include <chrono>
 #include <new>

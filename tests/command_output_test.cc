@@ -48,7 +48,7 @@ TEST_CASE("no output replaces another file of the same run") {
 // A textured triangle in a.json, which includes b.json; the texture is c-texture-1.png.
 void WriteTexturedScene(const Workspace& work) {
   Picture8 image{2, 2, std::vector<std::uint8_t>(12, 200)};
-  REQUIRE(WritePng(image, Transfer::kLinear, work / "c-texture-1.png").ok());
+  REQUIRE(WritePng(image, Transfer::kSrgb, work / "c-texture-1.png").ok());
   WriteText(work / "b.json", R"({"materials": [{"name": "m",
       "base_colour": {"texture": {"image": "c-texture-1.png"}}, "ambient": 1}],
       "objects": [{"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, "material": "m"}],

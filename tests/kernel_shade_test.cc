@@ -270,20 +270,20 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
       Fill(surfaces, want);
       ColourStream<Real> colours;
       RayStream<Real> rays;
-      IncidenceStream<Real> incidence;
-      colours.Allocate(count), rays.Allocate(count), incidence.Allocate(count);
+      IncidenceStream<Real> incidences;
+      colours.Allocate(count), rays.Allocate(count), incidences.Allocate(count);
       AlignedArray<std::uint32_t> faces, surface_of_ray;
       faces.Allocate(StreamCapacity(count)), surface_of_ray.Allocate(StreamCapacity(count));
 
       kernels.shade_ambient(material, surfaces.view(), count, colours.output());
       const std::uint32_t facing = kernels.face_light(light, material, surfaces.view(), count,
-                                                      faces.data(), incidence.output());
+                                                      faces.data(), incidences.output());
       const std::uint32_t shadows = kernels.generate_shadow(
           light, surfaces.view(), faces.data(), count, rays.output(), surface_of_ray.data());
       REQUIRE(shadows == facing);
       // Every third surface that faces the light is in shadow.
       for (std::uint32_t i = 0; i < count; i += 3) faces[i] = 0;
-      kernels.shade_light(light, material, surfaces.view(), incidence.view(), faces.data(), count,
+      kernels.shade_light(light, material, surfaces.view(), incidences.view(), faces.data(), count,
                           colours.output());
 
       std::uint32_t ray = 0;

@@ -253,6 +253,7 @@ TEST_CASE_TEMPLATE("rays and scenes without scale trace as the scalar specificat
       for (int i = 0; i < 128; ++i) {
         const Vec3d from = UniformPoint(random, -6, 6), to = UniformPoint(random, -2, 2);
         rays.push_back({As<Real>(from * scale), As<Real>((to - from) * length)});
+        rays.back().t_min = std::numeric_limits<Real>::denorm_min();
         if (i % 8 == 0) rays.back().t_min = Real(-1);
       }
     }

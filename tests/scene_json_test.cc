@@ -61,7 +61,7 @@ void CheckCrystalBallCameras(const Scene& scene) {
 }
 
 TEST_CASE("scenes are written for displays unless they say otherwise, and their colours stay") {
-  CHECK(Settings().transfer == Transfer::kSrgb);
+  CHECK(sheaf::Settings().transfer == Transfer::kSrgb);
   const std::pair<const char*, Transfer> cases[] = {{"", Transfer::kSrgb},
                                                     {R"(, "srgb": "pictures")", Transfer::kSrgb},
                                                     {R"(, "srgb": false)", Transfer::kLinear}};
