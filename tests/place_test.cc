@@ -114,6 +114,7 @@ TEST_CASE("a scene may have any unit of length") {
 
 TEST_CASE("other projections see a scene anywhere") {
   Scene scene = SmallBall();
+  scene.views.clear();  // they name cameras that go
   scene.cameras = {{"flat", {0, 3, 3}, {0, -1, -10}, {0, 1, 0}, Orthographic{9}},
                    {"all", {0, 0, -5}, {0, -1, -10}, {0, 1, 0}, Equirectangular{}},
                    {"fish", {0, 2, -4}, {0, -1, -10}, {0, 1, 0}, Fisheye{170}}};

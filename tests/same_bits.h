@@ -16,7 +16,7 @@ namespace sheaf {
 inline Film RenderOrFail(const Scene& scene, const Camera& camera, const RenderOptions& options,
                          RenderStats* stats = nullptr) {
   Result<Film> film = Render(scene, camera, options, stats);
-  REQUIRE(film.ok());
+  if (!film.ok()) FAIL(film.error().message);
   return std::move(film).value();
 }
 

@@ -116,7 +116,7 @@ const std::vector<Misuse>& NumberMisuses() {
        [](Scene& s) { s.materials[0].emission.x = kInfinity; }},
       {"light 0 \"lamp\": position is nan, not a number in [-1e30, 1e30]",
        [](Scene& s) { std::get<PointLight>(s.lights[0].source).position.x = kNaN; }},
-      {"light 0 \"lamp\": falloff: one of the terms must be at least 1e-30",
+      {"light 0 \"lamp\": falloff: one of the terms must be at least 1e-38",
        [](Scene& s) {
          std::get<PointLight>(s.lights[0].source).falloff = {0, 0, 0};
        }},

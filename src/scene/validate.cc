@@ -29,6 +29,8 @@ constexpr double kLargest = std::numeric_limits<float>::max();
 constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 constexpr Range kPlace{-kMaxCoordinate, kMaxCoordinate, "a number in [-1e30, 1e30]"};
 constexpr Range kLength{0, kMaxCoordinate, "a number in [0, 1e30]"};
+// By the unit of length: in a scene of tiny numbers light falls off by huge ones.
+constexpr Range kFalloff{0, 1e38, "a number in [0, 1e38]"};
 constexpr Range kAny{-kLargest, kLargest, "a finite float"};
 constexpr Range kAtLeastZero{0, kLargest, "a finite float of at least 0"};
 constexpr Range kPositive{kSmallest, kLargest, "a finite float above 0"};
@@ -150,10 +152,13 @@ void Check(const Object& object, FirstFault& fault) {
 
 void CheckSource(const PointLight& point, FirstFault& fault) {
   fault.Components("position", point.position, kPlace);
-  fault.Number("falloff.constant", point.falloff.constant, kLength);
-  fault.Number("falloff.linear", point.falloff.linear, kLength);
-  fault.Number("falloff.quadratic", point.falloff.quadratic, kLength);
-  if (!HasTerm(point.falloff)) fault.Fail(fmt::format("falloff: {}", kFalloffFault));
+  fault.Number("falloff.constant", point.falloff.constant, kFalloff);
+  fault.Number("falloff.linear", point.falloff.linear, kFalloff);
+  fault.Number("falloff.quadratic", point.falloff.quadratic, kFalloff);
+  const Falloff& falloff = point.falloff;
+  if (!(std::max({falloff.constant, falloff.linear, falloff.quadratic}) >= 1e-38)) {
+    fault.Fail("falloff: one of the terms must be at least 1e-38");
+  }
   if (!point.cone) return;
   fault.Direction("cone.direction", point.cone->direction);
   fault.Number("cone.inner", point.cone->inner, kAngle);
