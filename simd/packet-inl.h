@@ -183,8 +183,8 @@ HWY_INLINE hn::Vec<IdLanes<D>> Octants(D /*d*/, V dx, V dy, V dz) {
 }
 
 // FitsBoxes and SlabsOf of src/scalar/ray_slabs.h.
-template <typename Real>
-HWY_INLINE void PrepareBoxes(const TreeView<Real>& tree, Packet<Real>& packet) {
+template <typename TreeReal, typename Real>
+HWY_INLINE void PrepareBoxes(const TreeView<TreeReal>& tree, Packet<Real>& packet) {
   if (packet.has_boxes) return;
   packet.has_boxes = true;
   const Lanes<Real> d;

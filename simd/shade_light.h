@@ -2,7 +2,6 @@
 #ifndef SHEAF_SIMD_SHADE_LIGHT_H_
 #define SHEAF_SIMD_SHADE_LIGHT_H_
 
-#include "simd/incidence.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 

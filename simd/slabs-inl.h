@@ -49,7 +49,8 @@ struct LaneSlabs {
   SlabRows rows;
   V scale_x, scale_y, scale_z, enter_x, enter_y, enter_z, leave_x, leave_y, leave_z, t_min;
 
-  HWY_INLINE LaneSlabs(const TreeView<Real>& /*tree*/, const Packet<Real>& packet,
+  template <typename TreeReal>
+  HWY_INLINE LaneSlabs(const TreeView<TreeReal>& /*tree*/, const Packet<Real>& packet,
                        std::uint32_t lane)
       : rows(packet.octant[lane]) {
     const auto all = [&](const Real(&values)[kPacketSize<Real>])
@@ -60,60 +61,51 @@ struct LaneSlabs {
     t_min = all(packet.t_min);
   }
 
+  // Where the ray enters, `least` or later, and leaves the boxes of the children from i on, a
+  // vector of them.
+  HWY_INLINE V Enter(const TreeNode& node, std::uint32_t i, V least) const {
+    return hn::Max(hn::Max(hn::MulAdd(Planes(node, rows.in_x, i), scale_x, enter_x),
+                           hn::MulAdd(Planes(node, rows.in_y, i), scale_y, enter_y)),
+                   hn::Max(hn::MulAdd(Planes(node, rows.in_z, i), scale_z, enter_z), least));
+  }
+  HWY_INLINE V Leave(const TreeNode& node, std::uint32_t i) const {
+    return hn::Min(hn::Min(hn::MulAdd(Planes(node, rows.out_x, i), scale_x, leave_x),
+                           hn::MulAdd(Planes(node, rows.out_y, i), scale_y, leave_y)),
+                   hn::MulAdd(Planes(node, rows.out_z, i), scale_z, leave_z));
+  }
+
   static HWY_INLINE Real LastOf(Real t_best) { return t_best * Real(kBoxFarFactor); }
 
-  // Bits of the children from i on, a vector of them, that the ray meets up to `last`. Writes where
-  // it enters them.
+  // Bits of those children that the ray meets up to `last`. Writes where it enters them.
   HWY_INLINE std::uint32_t Meet(const TreeNode& node, std::uint32_t i, Real last,
                                 Real* enters) const {
     const D d;
-    const auto plane = [&](std::size_t row)
-                           SHEAF_LAMBDA { return LoadPlanes(d, node.bounds[row] + i); };
-    const V enter = hn::Max(hn::Max(hn::MulAdd(plane(rows.in_x), scale_x, enter_x),
-                                    hn::MulAdd(plane(rows.in_y), scale_y, enter_y)),
-                            hn::Max(hn::MulAdd(plane(rows.in_z), scale_z, enter_z), t_min));
-    const V leave = hn::Mul(hn::Min(hn::Min(hn::MulAdd(plane(rows.out_x), scale_x, leave_x),
-                                            hn::MulAdd(plane(rows.out_y), scale_y, leave_y)),
-                                    hn::MulAdd(plane(rows.out_z), scale_z, leave_z)),
-                            hn::Set(d, Real(kBoxFarFactor)));
+    const V enter = Enter(node, i, t_min);
+    const V leave = hn::Mul(Leave(node, i), hn::Set(d, Real(kBoxFarFactor)));
     hn::Store(enter, d, enters + i);
     return MaskBits(d, hn::Le(enter, hn::Min(leave, hn::Set(d, last))));
   }
+
+ private:
+  static HWY_INLINE V Planes(const TreeNode& node, std::size_t row, std::uint32_t i) {
+    return LoadPlanes(D(), node.bounds[row] + i);
+  }
 };
 
-// One ray of a packet within the wider limits: WideSlabsOf of src/scalar/ray_slabs.h.
+// One ray of a packet within the wider limits, in double and for any t: WideSlabsOf of
+// src/scalar/ray_slabs.h.
 template <typename Real>
 struct WideSlabs {
   using Distance = double;
   using D = LeafLanes<double>;
   using V = hn::Vec<D>;
 
-  SlabRows rows;
-  double scale[3], enter[3], leave[3], first;
+  LaneSlabs<double> slabs;
+  double first;
 
   HWY_INLINE WideSlabs(const TreeView<Real>& tree, const Packet<Real>& packet, std::uint32_t lane)
-      : rows(packet.octant[lane]), first(OutwardBy(static_cast<double>(packet.t_min[lane]), -1)) {
-    double size = 0, reach = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double o = static_cast<double>(packet.origin[axis][lane]);
-      size = std::max(size, std::abs(static_cast<double>(packet.direction[axis][lane])));
-      reach = std::max({reach, static_cast<double>(tree.upper[axis]) - o,
-                        o - static_cast<double>(tree.lower[axis])});
-    }
-    const double least = size * static_cast<double>(kMinBoxSlope);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double o = static_cast<double>(packet.origin[axis][lane]);
-      const double dir = static_cast<double>(packet.direction[axis][lane]);
-      const bool steep = std::abs(dir) < least;
-      double slack = std::abs(o) * static_cast<double>(kBoxOriginSlack) +
-                     static_cast<double>(kBoxAbsoluteSlack);
-      if (steep) slack += reach * 2 * static_cast<double>(kMinBoxSlope);
-      slack = std::copysign(slack, dir);
-      scale[axis] = 1 / (steep ? std::copysign(least, dir) : dir);
-      enter[axis] = -((o + slack) * scale[axis]);
-      leave[axis] = -((o - slack) * scale[axis]);
-    }
-  }
+      : slabs(tree, Widened(tree, packet, lane), 0),
+        first(OutwardBy(static_cast<double>(packet.t_min[lane]), -1)) {}
 
   static HWY_INLINE double OutwardBy(double t, double sign) {
     return t + sign * std::abs(t) * (static_cast<double>(kBoxFarFactor) - 1);
@@ -124,19 +116,31 @@ struct WideSlabs {
   HWY_INLINE std::uint32_t Meet(const TreeNode& node, std::uint32_t i, double last,
                                 double* enters) const {
     const D d;
-    const auto at = [&](std::size_t row, int axis, const double* offset) SHEAF_LAMBDA {
-      return hn::MulAdd(LoadPlanes(d, node.bounds[row] + i), hn::Set(d, scale[axis]),
-                        hn::Set(d, offset[axis]));
-    };
     const V margin = hn::Set(d, static_cast<double>(kBoxFarFactor) - 1);
-    const V in =
-        hn::Max(hn::Max(at(rows.in_x, 0, enter), at(rows.in_y, 1, enter)), at(rows.in_z, 2, enter));
-    const V out = hn::Min(hn::Min(at(rows.out_x, 0, leave), at(rows.out_y, 1, leave)),
-                          at(rows.out_z, 2, leave));
+    const V in = slabs.Enter(node, i, hn::Set(d, -kDefaultTMax<double>));
+    const V out = slabs.Leave(node, i);
     const V from = hn::Max(hn::NegMulAdd(hn::Abs(in), margin, in), hn::Set(d, first));
     hn::Store(from, d, enters + i);
     return MaskBits(d,
                     hn::Le(from, hn::Min(hn::MulAdd(hn::Abs(out), margin, out), hn::Set(d, last))));
+  }
+
+ private:
+  // A packet of the ray in every lane.
+  static HWY_NOINLINE Packet<double> Widened(const TreeView<Real>& tree, const Packet<Real>& packet,
+                                             std::uint32_t lane) {
+    const Lanes<double> d;
+    Packet<double> wide;
+    for (int axis = 0; axis < 3; ++axis) {
+      hn::Store(hn::Set(d, static_cast<double>(packet.origin[axis][lane])), d, wide.origin[axis]);
+      hn::Store(hn::Set(d, static_cast<double>(packet.direction[axis][lane])), d,
+                wide.direction[axis]);
+    }
+    hn::Store(hn::Set(d, static_cast<double>(packet.t_min[lane])), d, wide.t_min);
+    hn::Store(hn::Set(d, kDefaultTMax<double>), d, wide.t_best);
+    wide.has_boxes = false;
+    PrepareBoxes(tree, wide);
+    return wide;
   }
 };
 

@@ -109,6 +109,18 @@ struct ColourFields {
       std::make_tuple(&ColourFields::r, &ColourFields::g, &ColourFields::b);
 };
 
+// How a light meets surfaces, one an element: what FaceLight finds and ShadeLight goes by.
+template <typename Real, template <typename> class Field>
+struct IncidenceFields {
+  Field<Real> x, y, z;  // unit vector to the light
+  Field<Real> cosine;   // of it and the normal; 0 where the light lies on the point
+  Field<Real> falloff;  // what the light is divided by
+
+  static constexpr auto kFields =
+      std::make_tuple(&IncidenceFields::x, &IncidenceFields::y, &IncidenceFields::z,
+                      &IncidenceFields::cosine, &IncidenceFields::falloff);
+};
+
 template <typename Real>
 using RayView = RayFields<Real, ConstField>;
 template <typename Real>
@@ -129,6 +141,10 @@ template <typename Real>
 using ColourView = ColourFields<Real, ConstField>;
 template <typename Real>
 using ColourOutput = ColourFields<Real, MutableField>;
+template <typename Real>
+using IncidenceView = IncidenceFields<Real, ConstField>;
+template <typename Real>
+using IncidenceOutput = IncidenceFields<Real, MutableField>;
 
 // Calls f(field of a, field of b) for the fields of two instances of one stream, in order.
 template <typename A, typename B, typename F>

@@ -1,15 +1,14 @@
 #include "src/formats/image.h"
 
 #include <fmt/format.h>
-#include <png.h>
 #include <turbojpeg.h>
 
 #include <bit>
 #include <cstring>
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <memory>
 
+#include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 
@@ -52,76 +51,16 @@ void ToNumbers(Image& image) {
   }
 }
 
-// Texels as they lie in the file. libpng's simple interface would re-encode those that a gAMA chunk
-// calls linear, and what texels mean is for the scene to say.
-class PngDecoder {
- public:
-  explicit PngDecoder(std::string_view bytes)
-      : bytes_(bytes),
-        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, &OnError, &OnWarning)) {
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
-  }
-  PngDecoder(const PngDecoder&) = delete;
-  PngDecoder& operator=(const PngDecoder&) = delete;
-  ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
-
-  // Reads up to the pixels and asks for RGBA of 8 bits. False: see message().
-  bool ReadHeader() {
-    if (info_ == nullptr) return false;
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_set_read_fn(png_, this, &Read);
-    png_set_user_limits(png_, kMaxTextureSide, kMaxTextureSide);
-    png_read_info(png_, info_);
-    png_set_expand(png_);
-    png_set_scale_16(png_);
-    png_set_gray_to_rgb(png_);
-    png_set_add_alpha(png_, 255, PNG_FILLER_AFTER);
-    png_set_interlace_handling(png_);
-    png_read_update_info(png_, info_);
-    return true;
-  }
-  std::uint64_t width() const { return png_get_image_width(png_, info_); }
-  std::uint64_t height() const { return png_get_image_height(png_, info_); }
-  const std::string& message() const { return message_; }
-
-  bool ReadRows(png_bytepp rows) {
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_read_image(png_, rows);
-    png_read_end(png_, nullptr);
-    return true;
-  }
-
- private:
-  static void OnError(png_structp png, png_const_charp what) {
-    *static_cast<std::string*>(png_get_error_ptr(png)) = what;
-    png_longjmp(png, 1);
-  }
-  static void OnWarning(png_structp, png_const_charp) {}
-  static void Read(png_structp png, png_bytep to, std::size_t count) {
-    auto* decoder = static_cast<PngDecoder*>(png_get_io_ptr(png));
-    if (decoder->bytes_.size() < count) png_error(png, "read beyond end of data");
-    std::memcpy(to, decoder->bytes_.data(), count);
-    decoder->bytes_.remove_prefix(count);
-  }
-
-  std::string_view bytes_;
-  std::string message_ = "libpng does not start";
-  png_structp png_;
-  png_infop info_ = nullptr;
-};
-
+// Texels as they lie in the file: what they mean is for the scene to say.
 Result<Image> DecodePng(std::string_view bytes) {
-  PngDecoder png(bytes);
-  if (!png.ReadHeader()) return Refused(Printable(png.message()));
-  if (const Status sized = CheckSize(png.width(), png.height(), bytes.size()); !sized) {
-    return sized.error();
-  }
-  Image image = NewImage(png.width(), png.height());
-  std::vector<png_bytep> rows(png.height());
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    rows[y] = reinterpret_cast<png_bytep>(image.texels.data() + y * png.width());
-  }
-  if (!png.ReadRows(rows.data())) return Refused(Printable(png.message()));
+  PngReader png;
+  const auto failed = [&] { return Refused(Printable(png.complaint.text)); };
+  if (!png.ReadHeader(bytes, PngPixels::kRgba8)) return failed();
+  const auto width = static_cast<std::uint64_t>(png.width),
+             height = static_cast<std::uint64_t>(png.height);
+  if (const Status sized = CheckSize(width, height, bytes.size()); !sized) return sized.error();
+  Image image = NewImage(width, height);
+  if (!png.ReadRows(reinterpret_cast<std::uint8_t*>(image.texels.data()))) return failed();
   return image;
 }
 

@@ -15,103 +15,13 @@
 
 #include "sheaf/version.h"
 #include "src/core/atomic_file.h"
-#include "src/formats/deflate.h"
+#include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
 #include "src/formats/quantize.h"
 #include "src/formats/read_file.h"
 
 namespace sheaf {
 namespace {
-
-// libpng reports an error by longjmp, which runs no destructor. So every function below that may be
-// jumped out of holds only trivial locals; what owns memory lives in its caller.
-
-// Where libpng leaves its last words.
-struct Complaint {
-  char text[200] = "";
-};
-
-[[noreturn]] void OnError(png_structp png, png_const_charp message) {
-  auto* complaint = static_cast<Complaint*>(png_get_error_ptr(png));
-  std::snprintf(complaint->text, sizeof(complaint->text), "%s", message);
-  png_longjmp(png, 1);
-}
-
-void OnWarning(png_structp, png_const_charp) {}
-
-// Of the whole picture, in the file of a part.
-constexpr char kSizeKey[] = "sheaf:size";
-
-constexpr std::size_t kChunkBytes = 64 << 10;  // of compressed pixels, at least, but for the last
-
-class PngReader {
- public:
-  PngReader()
-      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, OnError, OnWarning)) {
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
-  }
-  PngReader(const PngReader&) = delete;
-  PngReader& operator=(const PngReader&) = delete;
-  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-
-  // Reads up to the pixels and asks for RGB, of 8 bits or of 16 where the file has them and
-  // `most_bits` allows. False: see `complaint`.
-  bool ReadHeader(std::FILE* file, int most_bits) {
-    if (info_ == nullptr) return false;
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_init_io(png_, file);
-    png_set_user_limits(png_, kMaxImageSide, kMaxImageSide);
-    png_read_info(png_, info_);
-    png_set_expand(png_);
-    bits = png_get_bit_depth(png_, info_) == 16 && most_bits == 16 ? 16 : 8;
-    if (bits == 8) png_set_scale_16(png_);
-    int intent = 0;
-    is_srgb = png_get_sRGB(png_, info_, &intent) != 0;
-    png_fixed_point gamma = 0;
-    is_linear = !is_srgb && png_get_gAMA_fixed(png_, info_, &gamma) != 0 && gamma == PNG_FP_1;
-    int unit = 0;
-    png_int_32 x = 0, y = 0;
-    if (png_get_oFFs(png_, info_, &x, &y, &unit) && unit == PNG_OFFSET_PIXEL) {
-      offset_x = x, offset_y = y;
-    }
-    png_textp texts = nullptr;
-    const int text_count = png_get_text(png_, info_, &texts, nullptr);
-    for (int i = 0; i < text_count; ++i) {
-      if (std::strcmp(texts[i].key, kSizeKey) == 0) {
-        std::sscanf(texts[i].text, "%dx%d", &full_width, &full_height);
-      }
-      for (const char* key : kMetadataKeys) {
-        if (std::strcmp(texts[i].key, key) == 0) metadata.emplace_back(key, texts[i].text);
-      }
-    }
-    png_set_strip_alpha(png_);
-    png_set_gray_to_rgb(png_);
-    png_set_interlace_handling(png_);
-    png_read_update_info(png_, info_);
-    width = static_cast<int>(png_get_image_width(png_, info_));
-    height = static_cast<int>(png_get_image_height(png_, info_));
-    row_bytes = png_get_rowbytes(png_, info_);
-    return true;
-  }
-
-  bool ReadRows(png_bytepp rows) {
-    if (setjmp(png_jmpbuf(png_))) return false;
-    png_read_image(png_, rows);
-    png_read_end(png_, nullptr);
-    return true;
-  }
-
-  Complaint complaint;
-  int width = 0, height = 0, bits = 8;
-  bool is_srgb = false, is_linear = false;
-  int offset_x = 0, offset_y = 0, full_width = 0, full_height = 0;
-  std::size_t row_bytes = 0;
-  PictureMetadata metadata;
-
- private:
-  png_structp png_;
-  png_infop info_ = nullptr;
-};
 
 // Owns libpng's state and the file; libpng keeps pointers into both, so that it never moves.
 class PngWriter {
@@ -121,8 +31,8 @@ class PngWriter {
         file_(std::move(file)),
         spec_(spec),
         rows_left_(spec.window.height()),
-        filtered_(1 + static_cast<std::size_t>(spec.window.width()) * (spec.bits == 16 ? 6 : 3)),
-        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, OnError, OnWarning)) {
+        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, &OnPngError,
+                                     &OnPngWarning)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
   }
   PngWriter(const PngWriter&) = delete;
@@ -133,7 +43,7 @@ class PngWriter {
     texts_ = {{"Software", fmt::format("sheaf {}", kVersion)}};
     texts_.insert(texts_.end(), spec_.metadata.begin(), spec_.metadata.end());
     if (!spec_.is_whole()) {
-      texts_.emplace_back(kSizeKey, fmt::format("{}x{}", spec_.full_width, spec_.full_height));
+      texts_.emplace_back(kPngSizeKey, fmt::format("{}x{}", spec_.full_width, spec_.full_height));
     }
     return StatusOf(EncodeHeader());
   }
@@ -142,34 +52,25 @@ class PngWriter {
   Status WriteRow(const std::uint8_t* rgb) {
     assert(rows_left_ > 0);
     --rows_left_;
-    // Each byte less that of the pixel before: of all filters for all rows the best one, and no
-    // row has to be filtered in five ways to choose one.
-    const std::size_t pixel = spec_.bits == 16 ? 6 : 3;
-    filtered_[0] = PNG_FILTER_VALUE_SUB;
-    std::uint8_t* const bytes = filtered_.data() + 1;
-    const std::size_t size = filtered_.size() - 1;
-    std::copy_n(rgb, pixel, bytes);
-    for (std::size_t i = pixel; i < size; ++i) {
-      bytes[i] = static_cast<std::uint8_t>(rgb[i] - rgb[i - pixel]);
-    }
-    deflater_.Write(filtered_.data(), filtered_.size());
-    return deflater_.output_size() < kChunkBytes ? Status(Done{}) : WritePixels();
+    return StatusOf(EncodeRow(rgb));
   }
 
   Status Finish() {
     assert(rows_left_ == 0);
-    deflater_.Finish();
-    if (const Status written = WritePixels(); !written) return written;
-    const Status ended = StatusOf(EncodeChunk("IEND", nullptr, 0));
+    const Status ended = StatusOf(EncodeEnd());
     return ended ? file_.Commit() : ended;
   }
 
  private:
-  // False: see `complaint_`, and so below.
+  // False: see `complaint_`, and so for the two below.
   bool EncodeHeader() {
     if (info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_write_fn(png_, this, &WriteToFile, nullptr);
+    // Of the filters, that of the pixel before is best for most pictures, and no row has to be
+    // filtered in five ways to choose one. docs/benchmarking.md has other levels.
+    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_compression_level(png_, 4);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(spec_.window.width()),
                  static_cast<png_uint_32>(spec_.window.height()), spec_.bits == 16 ? 16 : 8,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
@@ -197,16 +98,16 @@ class PngWriter {
     return true;
   }
 
-  bool EncodeChunk(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  bool EncodeRow(const std::uint8_t* rgb) {
     if (setjmp(png_jmpbuf(png_))) return false;
-    png_write_chunk(png_, reinterpret_cast<png_const_bytep>(name), bytes, size);
+    png_write_row(png_, rgb);
     return true;
   }
 
-  // What is compressed.
-  Status WritePixels() {
-    const std::vector<std::uint8_t> bytes = deflater_.TakeOutput();
-    return StatusOf(EncodeChunk("IDAT", bytes.data(), bytes.size()));
+  bool EncodeEnd() {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_write_end(png_, info_);
+    return true;
   }
 
   // A failed write is kept, and later bytes are dropped, rather than thrown through libpng.
@@ -229,9 +130,7 @@ class PngWriter {
   PictureSpec spec_;
   PictureMetadata texts_;
   int rows_left_;
-  std::vector<std::uint8_t> filtered_;  // a row, behind the number of its filter
-  Deflater deflater_;
-  Complaint complaint_;
+  PngComplaint complaint_;
   png_structp png_;
   png_infop info_ = nullptr;
 };
@@ -272,7 +171,7 @@ class PngEncoder : public PictureEncoder {
 };
 
 // The pixels of a file, rows from the top; `reader` then says what they are.
-Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_bits,
+Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, PngPixels pixels,
                                              PngReader& reader) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
@@ -282,7 +181,7 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_b
                                 ? "no whole PNG: the file is empty or cut short"
                                 : Printable(reader.complaint.text));
   };
-  if (!reader.ReadHeader(file.get(), most_bits)) return failed();
+  if (!reader.ReadHeader(file.get(), pixels)) return failed();
 
   const auto height = static_cast<std::size_t>(reader.height);
   // Deflate shrinks at most 1032 to 1: a header that promises more pixels than that lies. Packed
@@ -295,9 +194,7 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, int most_b
     return InputError(path, "has more pixels than its bytes can hold");
   }
   std::vector<std::uint8_t> bytes(reader.row_bytes * height);
-  std::vector<png_bytep> rows(height);
-  for (std::size_t y = 0; y < height; ++y) rows[y] = bytes.data() + reader.row_bytes * y;
-  if (!reader.ReadRows(rows.data())) return failed();
+  if (!reader.ReadRows(bytes.data())) return failed();
   return bytes;
 }
 
@@ -325,14 +222,14 @@ Status WritePng(const Picture8& picture, Transfer transfer, const std::string& p
 
 Result<Picture8> ReadPng(const std::string& path) {
   PngReader reader;
-  Result<std::vector<std::uint8_t>> bytes = ReadPixels(path, 8, reader);
+  Result<std::vector<std::uint8_t>> bytes = ReadPixels(path, PngPixels::kRgb8, reader);
   if (!bytes) return bytes.error();
   return Picture8{reader.width, reader.height, std::move(bytes).value()};
 }
 
 Result<ReadPictureResult> ReadPngFilm(const std::string& path) {
   PngReader reader;
-  const Result<std::vector<std::uint8_t>> read = ReadPixels(path, 16, reader);
+  const Result<std::vector<std::uint8_t>> read = ReadPixels(path, PngPixels::kRgb8Or16, reader);
   if (!read) return read.error();
   const std::vector<std::uint8_t>& bytes = read.value();
   ReadPictureResult result;

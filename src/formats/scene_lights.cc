@@ -51,7 +51,8 @@ void ReadFalloff(const JsonCursor& value, Falloff* out) {
   const bool linear = (*terms)[1].Read(kFalloffTerm, &falloff.linear);
   const bool quadratic = (*terms)[2].Read(kFalloffTerm, &falloff.quadratic);
   if (!constant || !linear || !quadratic) return;
-  if (!HasTerm(falloff)) return value.Fail(kFalloffFault);
+  // Smaller terms would be zero in a float, and light would be divided by it.
+  if (!HasTerm(falloff, 1e-30)) return value.Fail("one of the terms must be at least 1e-30");
   *out = falloff;
 }
 

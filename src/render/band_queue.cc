@@ -1,7 +1,6 @@
 #include "src/render/band_queue.h"
 
 #include <cassert>
-#include <utility>
 
 namespace sheaf {
 
@@ -17,41 +16,9 @@ Film& BandQueue::Front(int width, int height, Layers layers) {
 Status BandQueue::Wait() { return taken_.valid() ? taken_.get() : Status(Done{}); }
 
 void BandQueue::Push() {
-  assert(!taken_.valid() && thread_.joinable());
-  {
-    const std::lock_guard lock(mutex_);
-    task_ = std::packaged_task<Status()>([this, &band = films_[front_]] { return Take(band); });
-    taken_ = task_.get_future();
-  }
-  changed_.notify_one();
+  assert(!taken_.valid());
+  taken_ = std::async(std::launch::async, [this, &band = films_[front_]] { return Take(band); });
   front_ = 1 - front_;
-}
-
-void BandQueue::StartThread() {
-  assert(!thread_.joinable());
-  thread_ = std::thread([this] { Serve(); });
-}
-
-// What it takes up it finishes, and it takes up all.
-void BandQueue::Serve() {
-  while (true) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return task_.valid() || is_closing_; });
-    if (!task_.valid()) return;
-    std::packaged_task<Status()> task = std::move(task_);
-    lock.unlock();
-    task();
-  }
-}
-
-BandQueue::~BandQueue() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    is_closing_ = true;
-  }
-  changed_.notify_one();
-  thread_.join();
 }
 
 Status BandQueue::Take(Film& band) {

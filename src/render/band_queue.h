@@ -3,11 +3,8 @@
 #define SHEAF_RENDER_BAND_QUEUE_H_
 
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <future>
-#include <mutex>
-#include <thread>
 
 #include "sheaf/error.h"
 #include "sheaf/film.h"
@@ -17,19 +14,11 @@ namespace sheaf {
 // May take the film's contents away.
 using BandSink = std::function<Status(Film& band)>;
 
-// The queue between a frame and its sink, one band long. Its destructor waits for the sink. One
-// thread serves all bands: a new thread may take milliseconds until it first runs, and until then,
-// or longer, on the core that renders.
+// The queue between a frame and its sink, one band long. Its destructor waits for the sink.
 class BandQueue {
  public:
   // A sink that fails sets `stop`, so that the band in work ends soon too. Both outlive the queue.
   BandQueue(const BandSink& sink, std::atomic<bool>& stop) : sink_(sink), stop_(stop) {}
-  ~BandQueue();
-  BandQueue(const BandQueue&) = delete;
-  BandQueue& operator=(const BandQueue&) = delete;
-
-  // Starts the thread. Before the first Push.
-  void StartThread();
 
   // The film that the sink does not have, in this size and with these layers, holding anything.
   // Valid until Push.
@@ -38,7 +27,7 @@ class BandQueue {
   // Waits until the sink is done with what it has; an error if it failed.
   Status Wait();
 
-  // After Wait: hands Front's film to the sink, in the queue's thread.
+  // After Wait: hands Front's film to the sink, in a thread of its own.
   void Push();
 
   // After Wait: hands Front's film to the sink and waits for it.
@@ -46,19 +35,12 @@ class BandQueue {
 
  private:
   Status Take(Film& band);
-  void Serve();
 
   const BandSink& sink_;
   std::atomic<bool>& stop_;
   Film films_[2];
   int front_ = 0;
-  std::future<Status> taken_;  // of the band that the sink has
-
-  std::thread thread_;
-  std::mutex mutex_;  // of the two below, which the thread waits for
-  std::condition_variable changed_;
-  std::packaged_task<Status()> task_;  // not yet taken up
-  bool is_closing_ = false;
+  std::future<Status> taken_;  // last: destroyed first, and its destructor waits
 };
 
 }  // namespace sheaf

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
 
-#include "src/core/vec3.h"
 #include "src/scene/bounds.h"
+#include "src/scene/direction.h"
 
 namespace sheaf {
 namespace {
@@ -17,10 +18,6 @@ constexpr double kMostDistances = 8;
 // The largest coordinate of a scene that is not scaled. Box tests hold to 2^39, and light needs the
 // squares of distances.
 constexpr double kLeastSize = 0x1p-20, kMostSize = 0x1p36;
-
-double DotOf(const Vec3d& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double LengthOf(const Vec3d& v) { return std::sqrt(DotOf(v, v)); }
-double LargestOf(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 // The place that a picture is seen from, and how far from there the nearest thing lies that it may
 // show: to its middle, and half its size.
@@ -34,13 +31,14 @@ struct Viewpoint {
 Vec3d PlaceFacing(const Camera& camera, const Vec3d& middle) {
   if (!std::holds_alternative<Orthographic>(camera.projection)) return camera.eye;
   const Vec3d forward = camera.look_at - camera.eye;
-  return camera.eye + forward * (DotOf(middle - camera.eye, forward) / DotOf(forward, forward));
+  return camera.eye +
+         forward * (glm::dot(middle - camera.eye, forward) / glm::dot(forward, forward));
 }
 
 void Approach(const Camera& camera, const Bounds& object, Viewpoint& view) {
   const Vec3d middle = object.min + (object.max - object.min) * 0.5;
   const Vec3d place = PlaceFacing(camera, middle);
-  const double distance = LengthOf(middle - place) + LengthOf(object.max - middle);
+  const double distance = glm::length(middle - place) + glm::length(object.max - middle);
   if (distance < view.distance) view = {place, distance};
 }
 
@@ -67,10 +65,11 @@ ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
     *all = {glm::min(all->min, bounds->min), glm::max(all->max, bounds->max)};
   }
   if (!(view.distance > 0) || !std::isfinite(view.distance)) return placement;
-  if (LargestOf(view.place) > kMostDistances * view.distance) placement.origin = OriginAt(view);
-  const double size =
-      std::max({LargestOf(all->min - placement.origin), LargestOf(all->max - placement.origin),
-                LargestOf(camera.eye - placement.origin)});
+  if (LargestComponent(view.place) > kMostDistances * view.distance)
+    placement.origin = OriginAt(view);
+  const double size = std::max({LargestComponent(all->min - placement.origin),
+                                LargestComponent(all->max - placement.origin),
+                                LargestComponent(camera.eye - placement.origin)});
   if (!(size >= kLeastSize && size <= kMostSize) && size > 0 && std::isfinite(size)) {
     placement.scale = std::ldexp(1.0, -std::ilogb(size));
   }

@@ -112,7 +112,6 @@ Status RenderBands(const PixelRect& area, const RenderOptions& options,
   for (auto& worker : workers) worker = make_worker();
 
   BandQueue queue(sink, progress.stop);
-  if (rows < area.height()) queue.StartThread();
   Status status = Done{};
   for (int y = area.y0; y < area.y1 && status; y += rows) {
     const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};

@@ -5,13 +5,10 @@
 #include <glm/geometric.hpp>
 
 namespace sheaf {
-namespace {
 
 double LargestComponent(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
-
-}  // namespace
 
 bool GivesDirection(const Vec3d& vector) { return LargestComponent(vector) >= 1e-30; }
 
@@ -39,8 +36,8 @@ const char* TextOf(ViewFault fault) {
   return "";
 }
 
-bool HasTerm(const Falloff& falloff) {
-  return !(falloff.constant < 1e-30 && falloff.linear < 1e-30 && falloff.quadratic < 1e-30);
+bool HasTerm(const Falloff& falloff, double least) {
+  return std::max({falloff.constant, falloff.linear, falloff.quadratic}) >= least;
 }
 
 }  // namespace sheaf

@@ -6,6 +6,9 @@
 
 namespace sheaf {
 
+// In size.
+double LargestComponent(const Vec3d& vector);
+
 // Whether the largest component is at least 1e-30 in size; false for NaN there.
 bool GivesDirection(const Vec3d& vector);
 
@@ -19,9 +22,8 @@ ViewFault FindViewFault(const Camera& camera);
 // "" for none.
 const char* TextOf(ViewFault fault);
 
-// Whether light is divided by more than 0: smaller terms would be zero in a float.
-bool HasTerm(const Falloff& falloff);
-inline constexpr const char* kFalloffFault = "one of the terms must be at least 1e-30";
+// Whether light is divided by more than 0: one of the terms is at least `least`.
+bool HasTerm(const Falloff& falloff, double least);
 
 }  // namespace sheaf
 

@@ -155,8 +155,7 @@ void CheckSource(const PointLight& point, FirstFault& fault) {
   fault.Number("falloff.constant", point.falloff.constant, kFalloff);
   fault.Number("falloff.linear", point.falloff.linear, kFalloff);
   fault.Number("falloff.quadratic", point.falloff.quadratic, kFalloff);
-  const Falloff& falloff = point.falloff;
-  if (!(std::max({falloff.constant, falloff.linear, falloff.quadratic}) >= 1e-38)) {
+  if (!HasTerm(point.falloff, 1e-38)) {
     fault.Fail("falloff: one of the terms must be at least 1e-38");
   }
   if (!point.cone) return;

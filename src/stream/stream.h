@@ -6,7 +6,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include "simd/incidence.h"
 #include "simd/streams.h"
 #include "src/core/aligned_array.h"
 
