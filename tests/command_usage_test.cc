@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -228,6 +229,42 @@ TEST_CASE("check lists bad scenes too, and the first decides the code") {
   WriteText(work / "e\x1b[31m.obj", kTriangle);
   const Outcome odd = work.Run({"check", work / "e\x1b[31m.obj"});
   CHECK(Contains(odd.out, "e\\u001B[31m.obj: sound: 1 object, 0 spheres, 1 triangle, 1 light, 1 "));
+}
+
+TEST_CASE("what is lost is said once a kind, and is an error with --strict") {
+  const Workspace work;
+  WriteText(work / "a.mtl", "newmtl red\nKd 1 0 0\n");
+  const std::string path = work / "a.obj";
+  WriteText(path,
+            "mtllib a.mtl\nmtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n"
+            "usemtl y\nf 1 2 3\nusemtl red\nf 1 2 3\n");
+  const Outcome listed = work.Run({"check", path});
+  CHECK(listed.code == 0);
+  CHECK(Contains(listed.out, "a.obj: sound: "));
+  CHECK(Contains(listed.out, "b.mtl: cannot open"));
+  CHECK(Contains(listed.out,
+                 "warning: " + path + ":6: usemtl: no material \"x\", so grey (2 in all)\n"));
+  CHECK(LineCount(listed.out) == 4);  // with what is skipped
+
+  const Outcome strict = work.Run({"check", path, kScene, "--strict", "--json"});
+  CHECK(strict.code == 3);
+  CHECK(strict.err == path + ": 2 warnings, which --strict takes for errors\n");
+  const json scenes = json::parse(strict.out);
+  REQUIRE(scenes.size() == 2);
+  CHECK(scenes[0]["warnings"].size() == 2);
+  CHECK(scenes[0].contains("error"));
+  CHECK(!scenes[1].contains("error"));
+  CHECK(Contains(work.Run({"check", path, "--strict"}).out, "a.obj: not sound: "));
+
+  const Outcome rendered =
+      work.Run({"render", path, "--size", "8x8", "-q", "--strict", "-o", work / "a.png"});
+  CHECK(rendered.code == 3);
+  CHECK(LineCount(rendered.err) == 3);
+  CHECK(!std::filesystem::exists(work / "a.png"));
+  CHECK(work.Run({"render", path, "--size", "8x8", "-q", "-o", work / "a.png"}).code == 0);
+  CHECK(
+      work.Run({"render", kScene, "--size", "8x8", "-q", "--strict", "-o", work / "b.png"}).code ==
+      0);
 }
 
 TEST_CASE("check, info and the statistics of a frame count disks") {

@@ -52,8 +52,9 @@ std::string CheckText(const Json& json) {
     if (kind == std::string("disks") && json[kind] == 0) continue;
     counts.push_back(CountText(json, kind));
   }
-  std::string text = fmt::format("{}: sound: {}\n", PrintablePath(json["path"].get<std::string>()),
-                                 fmt::join(counts, ", "));
+  std::string text =
+      fmt::format("{}: {}: {}\n", PrintablePath(json["path"].get<std::string>()),
+                  json.contains("error") ? "not sound" : "sound", fmt::join(counts, ", "));
   const auto skipped = json["skipped"].get<std::vector<std::string>>();
   if (!skipped.empty()) text += fmt::format("  skipped: {}\n", fmt::join(skipped, ", "));
   for (const Json& warning : json["warnings"]) {
@@ -80,11 +81,17 @@ Result<ExitCode> RunCheck(const CheckRequest& request) {
       all.push_back({{"path", path}, {"error", opened.error().message}});
       continue;
     }
-    const Json json = CheckJson(path, opened.value());
+    Json json = CheckJson(path, opened.value());
+    const Status strict = CheckStrict(path, opened.value().warnings, request.options);
+    if (!strict) json["error"] = strict.error().message;
     all.push_back(json);
-    if (request.json) continue;
-    const Status written = WriteStandardOutput(CheckText(json));
-    if (!written) return written.error();
+    if (!request.json) {
+      const Status written = WriteStandardOutput(CheckText(json));
+      if (!written) return written.error();
+    }
+    if (strict) continue;
+    const ExitCode bad = Report(strict.error());
+    if (code == ExitCode::kOk) code = bad;
   }
   const Status written = request.json ? WriteStandardOutput(JsonText(all)) : Status(Done{});
   if (!written) return written.error();

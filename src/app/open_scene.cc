@@ -11,6 +11,7 @@
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/formats/printable.h"
+#include "src/formats/read_file.h"
 #include "src/formats/read_scene.h"
 #include "src/scene/projection.h"
 
@@ -70,6 +71,7 @@ void AddSceneOptions(CLI::App& app, SceneOptions& options) {
              "Sides of an NFF file's cones and cylinders; 32 if absent");
   AddFlag(app, "--allow-outside", options.allow_outside,
           "Let the scene name files outside its folder");
+  AddFlag(app, "--strict", options.strict, "Take warnings about the scene for errors");
 }
 
 std::optional<std::string> GivenSceneOption(const SceneOptions& options) {
@@ -79,6 +81,7 @@ std::optional<std::string> GivenSceneOption(const SceneOptions& options) {
   if (options.fov) return "--fov";
   if (options.cone_sides) return "--cone-sides";
   if (options.allow_outside) return "--allow-outside";
+  if (options.strict) return "--strict";
   return std::nullopt;
 }
 
@@ -95,12 +98,21 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   return opened;
 }
 
+Status CheckStrict(const std::string& path, const std::vector<std::string>& warnings,
+                   const SceneOptions& options) {
+  if (!options.strict || warnings.empty()) return Done{};
+  return SceneError(path, fmt::format("{} warning{}, which --strict takes for errors",
+                                      warnings.size(), warnings.size() == 1 ? "" : "s"));
+}
+
 Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options) {
   Result<OpenedScene> opened = OpenSceneWithWarnings(path, options);
   if (!opened) return opened;
-  for (const std::string& warning : opened.value().warnings) {
-    std::fprintf(stderr, "sheaf: warning: %s\n", warning.c_str());
+  const std::vector<std::string>& warnings = opened.value().warnings;
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "%s%s\n", options.strict ? "" : "sheaf: warning: ", warning.c_str());
   }
+  if (const Status strict = CheckStrict(path, warnings, options); !strict) return strict.error();
   return opened;
 }
 

@@ -18,6 +18,7 @@ namespace sheaf {
 // How a file becomes a scene: the options of every command that reads one.
 struct SceneOptions {
   bool allow_outside = false;
+  bool strict = false;  // warnings are errors
   std::optional<int> cone_sides;
   std::optional<Vec3d> eye, look_at;     // of the scene's first camera
   std::optional<Projection> projection;  // likewise
@@ -36,7 +37,11 @@ struct OpenedScene {
 };
 Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options);
 
-// The same; prints the warnings on stderr.
+// An error where there are warnings and they may not be.
+Status CheckStrict(const std::string& path, const std::vector<std::string>& warnings,
+                   const SceneOptions& options);
+
+// A scene whose warnings are printed on stderr, unless they are errors.
 Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options);
 Result<Scene> OpenScene(const std::string& path, const SceneOptions& options);
 

@@ -27,8 +27,7 @@ Error GltfDocument::Failure() const {
 }
 
 void GltfDocument::Warn(const std::string& place, std::string_view what) {
-  files_.Warn(place.empty() ? fmt::format("{}: {}", PrintablePath(name_), what)
-                            : fmt::format("{}: {}: {}", PrintablePath(name_), place, what));
+  files_.Warn(place.empty() ? PlaceOf(name_) : fmt::format("{}: {}", PlaceOf(name_), place), what);
 }
 
 bool GltfDocument::Parse(std::string_view bytes) {

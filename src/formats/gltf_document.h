@@ -36,7 +36,7 @@ class GltfDocument {
   bool Fail(std::string place, std::string_view what);
   Error Failure() const;
 
-  // A line about what is passed over; `place` may be empty.
+  // What is passed over; `place` is a JSON pointer, or empty.
   void Warn(const std::string& place, std::string_view what);
 
  private:

@@ -205,7 +205,7 @@ class MtlReader : public tinyobj::MaterialReader {
     }
     const Result<std::string> text = ReadWholeFile(path.value(), kMaxTextBytes);
     if (!text) {
-      files_.Warn(fmt::format("{}: mtllib: {}", PrintablePath(name_), text.error().message));
+      files_.Warn(PlaceOf(name_), "mtllib", text.error().message);
       return false;
     }
     if (const Status sound = CheckMtl(text.value(), path.value()); !sound) {
@@ -409,8 +409,9 @@ void WarnOfMaterials(const std::map<std::string, std::size_t>& used,
   for (const tinyobj::material_t& material : materials) known.push_back(material.name);
   for (const auto& [material, line] : used) {
     if (std::find(known.begin(), known.end(), material) != known.end()) continue;
-    files.Warn(fmt::format("{}:{}: usemtl: no material \"{}\", so grey{}", PrintablePath(name),
-                           line, Printable(material), DidYouMean(material, known)));
+    files.Warn(PlaceOf(name, line), "usemtl",
+               fmt::format("no material \"{}\", so grey{}", Printable(material),
+                           DidYouMean(material, known)));
   }
 }
 

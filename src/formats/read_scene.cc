@@ -74,7 +74,8 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
       key_light = Complete(&scene.value());
       scene.value().settings.transfer = FindFormat(path)->model_transfer;
     }
-    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings(), files.paths()};
+    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings().Lines(),
+                           files.paths()};
   } catch (const std::bad_alloc&) {
     return InputError(path, "not enough memory to read the file");
   }

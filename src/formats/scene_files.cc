@@ -1,7 +1,6 @@
 #include "src/formats/scene_files.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace sheaf {
 namespace {
@@ -39,12 +38,6 @@ bool SceneFiles::Enter(const std::string& path) {
   if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) return false;
   open_.push_back(canonical);
   return true;
-}
-
-void SceneFiles::Warn(std::string line) {
-  if (std::find(warnings_.begin(), warnings_.end(), line) == warnings_.end()) {
-    warnings_.push_back(std::move(line));
-  }
 }
 
 }  // namespace sheaf

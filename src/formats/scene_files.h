@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sheaf/error.h"
 #include "sheaf/formats.h"
+#include "src/formats/warnings.h"
 
 namespace sheaf {
 
@@ -27,9 +29,12 @@ class SceneFiles {
   bool Enter(const std::string& path);
   void Leave() { open_.pop_back(); }
 
-  // A line about what is left out or replaced. The same line counts once.
-  void Warn(std::string line);
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  // What is left out or replaced, as Warnings::Add takes it. The rule for every reader: what can be
+  // rendered is rendered, and what was lost is said here.
+  void Warn(std::string_view place, std::string_view kind, std::string_view detail = {}) {
+    warnings_.Add(place, kind, detail);
+  }
+  const Warnings& warnings() const { return warnings_; }
 
   // The scene itself and whatever was resolved.
   const std::vector<std::string>& paths() const { return paths_; }
@@ -38,7 +43,7 @@ class SceneFiles {
   ReadOptions options_;
   std::filesystem::path root_;
   std::vector<std::filesystem::path> open_;
-  std::vector<std::string> warnings_;
+  Warnings warnings_;
   std::vector<std::string> paths_;
 };
 

@@ -66,8 +66,9 @@ enum class KeyLight { kAbsent, kAdded };
 struct ReadSceneResult {
   Scene scene;
   KeyLight key_light = KeyLight::kAbsent;  // kAdded: it is the scene's first light
-  std::vector<std::string> warnings;       // a line each: what was left out or replaced
-  std::vector<std::string> files;          // that the scene was read from, itself first
+  // What was left out or replaced: a line for each kind, with its first place and its number.
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;  // that the scene was read from, itself first
 };
 
 // Reads a scene that can be rendered. A model without a camera gets one that frames it; one without
