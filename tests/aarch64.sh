@@ -8,7 +8,7 @@
 #   dpkg --add-architecture arm64 && apt-get update
 #   apt-get install g++-aarch64-linux-gnu qemu-user-static \
 #       libhwy-dev:arm64 libtbb-dev:arm64 libpng-dev:arm64 libfmt-dev:arm64 \
-#       libtinyobjloader-dev:arm64 libtinygltf-dev:arm64 libturbojpeg0-dev:arm64
+#       libtinygltf-dev:arm64 libturbojpeg0-dev:arm64
 # Where that is not installed it says so and exits with 77, as a skipped test does.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,7 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 for tool in aarch64-linux-gnu-g++ qemu-aarch64-static; do
   command -v "$tool" >/dev/null || { echo "skipped: no $tool" >&2; exit 77; }
 done
-for library in libhwy libtinyobjloader libtinygltf libturbojpeg; do
+for library in libhwy libtinygltf libturbojpeg; do
   if ! compgen -G "/usr/lib/aarch64-linux-gnu/$library.*" >/dev/null; then
     echo "skipped: no $library for arm64" >&2
     exit 77

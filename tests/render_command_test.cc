@@ -226,7 +226,7 @@ TEST_CASE("--fov is not for an orthographic camera") {
 
 TEST_CASE("a bad model is one line and code 3, and leaves no picture") {
   const Workspace work;
-  WriteText(work / "a.obj", std::string(kTriangle) + "f 1 2 9\n");
+  WriteText(work / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n# its only face\nf 1 2 9\n");
   const Outcome outcome = work.Run({"render", work / "a.obj", "-o", work / "a.png"});
   CHECK(outcome.code == 3);
   CHECK(outcome.err == (work / "a.obj") + ":5: vertex 9 of 3\n");

@@ -21,7 +21,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sheafConfig.cmake ${CMAKE_CURRENT_BINA
 if(BUILD_SHARED_LIBS)
   set(SHEAF_PC_CFLAGS " -DSHEAF_SHARED")
 else()
-  set(SHEAF_PC_REQUIRES "libhwy, tbb, fmt, libpng, tinyobjloader, tinygltf, libturbojpeg")
+  set(SHEAF_PC_REQUIRES "libhwy, tbb, fmt, libpng, tinygltf, libturbojpeg")
   if(OpenEXR_FOUND)
     string(APPEND SHEAF_PC_REQUIRES ", OpenEXR")
   endif()

@@ -11,9 +11,9 @@
 
 namespace sheaf {
 
-// One mesh object a group and material. tinyobjloader reads the text once it is known to be sound:
-// the library takes bad numbers for 0. Errors are kScene, `name:line: what`. A material library
-// that is missing is a warning; docs/formats.md says what materials become.
+// One mesh object a group and material. What is not sound is left out with a warning; an error,
+// kScene and `name:line: what`, is a text of which no face is left. docs/formats.md says what
+// materials become.
 Result<Scene> ParseObj(std::string_view text, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf

@@ -22,10 +22,18 @@ std::optional<T> ParseWord(std::string_view word) {
 
 inline bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// Lines end in LF or CR LF. Holds no copy: the text outlives it.
+// Lines end in LF or CR LF; in CR alone where the first one does. A UTF-8 byte order mark is passed
+// over. Holds no copy: the text outlives it.
 class TextScanner {
  public:
-  explicit TextScanner(std::string_view text) : rest_(text) {}
+  explicit TextScanner(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+    const std::size_t end = rest_.find_first_of("\r\n");
+    const bool is_cr = end != std::string_view::npos && rest_[end] == '\r';
+    if (is_cr && rest_.substr(end + 1, 1) != "\n") line_end_ = '\r';
+  }
+
+  char line_end() const { return line_end_; }
 
   // The number of the line in work, from 1; 0 before the first NextLine.
   std::size_t line() const { return line_; }
@@ -34,7 +42,7 @@ class TextScanner {
   // Goes to the next line; false at the end.
   bool NextLine() {
     if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
+    const std::size_t end = rest_.find(line_end_);
     current_ = rest_.substr(0, end);
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++line_;
@@ -64,6 +72,7 @@ class TextScanner {
 
  private:
   std::string_view rest_, current_;
+  char line_end_ = '\n';
   std::size_t line_ = 0;
 };
 

@@ -1,0 +1,251 @@
+#include "src/formats/mtl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "src/formats/printable.h"
+#include "src/formats/read_file.h"
+#include "src/formats/read_scene.h"
+#include "src/formats/text_lines.h"
+
+namespace sheaf {
+namespace {
+
+constexpr std::pair<std::string_view, std::optional<Colour> MtlMaterial::*> kColours[] = {
+    {"Kd", &MtlMaterial::kd}, {"Ks", &MtlMaterial::ks}, {"Ke", &MtlMaterial::ke}};
+
+constexpr std::pair<std::string_view, std::optional<double> MtlMaterial::*> kNumbers[] = {
+    {"Ns", &MtlMaterial::ns}, {"Ni", &MtlMaterial::ni},       {"d", &MtlMaterial::d},
+    {"Tr", &MtlMaterial::tr}, {"illum", &MtlMaterial::illum},
+};
+
+// Textures that a material here has no place for.
+constexpr std::string_view kOtherMaps[] = {"map_Ka",   "map_Ks", "map_Ke", "map_Ns", "map_d",
+                                           "map_Pr",   "map_Pm", "map_Ps", "bump",   "map_bump",
+                                           "map_Bump", "norm",   "disp",   "decal",  "refl"};
+
+// What follows an option of a texture: so many numbers at most, or one word.
+struct MapOption {
+  std::string_view name;
+  int numbers;
+  bool changes_colour = false;  // or place, in a way that is not read
+};
+constexpr MapOption kMapOptions[] = {
+    {"-s", 3},        {"-o", 3},      {"-t", 3, true},       {"-mm", 2, true}, {"-bm", 1},
+    {"-boost", 1},    {"-texres", 1}, {"-clamp", 0},         {"-blendu", 0},   {"-blendv", 0},
+    {"-cc", 0, true}, {"-type", 0},   {"-imfchan", 0, true},
+};
+constexpr double kMostScale = 1e6;
+
+// Lines that name files of Windows.
+std::string WithSlashes(std::string_view reference) {
+  std::string path(reference);
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
+}
+
+Colour NotNegative(const Colour& colour) { return glm::max(colour, Colour(0.0)); }
+
+}  // namespace
+
+// ---- Reading ----
+
+void MtlLibraries::Read(std::string_view names, std::size_t line) {
+  const std::string_view named = WithoutComment(names);
+  std::string failure;
+  if (named != names && ReadFile(names, &failure)) return;
+  if (ReadFile(named, &failure)) return;
+  // Several files in a line are what the specification says, and rare.
+  std::vector<std::string> failures;
+  TextScanner words(named);
+  std::size_t count = 0;
+  if (words.NextLine()) {
+    for (std::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
+      std::string of_word;
+      if (!ReadFile(word, &of_word)) failures.push_back(of_word);
+    }
+  }
+  if (failures.size() >= count) failures = {failure};
+  for (const std::string& text : failures) files_.Warn(PlaceOf(obj_, line), "mtllib", text);
+}
+
+bool MtlLibraries::ReadFile(std::string_view reference, std::string* failure) {
+  const Result<std::string> path = files_.Resolve(obj_, WithSlashes(reference));
+  if (!path) {
+    *failure = fmt::format("{}: {}", Printable(reference), path.error().message);
+    return false;
+  }
+  // Some writers name the library before every object.
+  if (std::find(paths_.begin(), paths_.end(), path.value()) != paths_.end()) return true;
+  const Result<std::string> bytes = ReadWholeFile(path.value(), kMaxTextBytes);
+  if (!bytes) {
+    *failure = bytes.error().message;
+    return false;
+  }
+  paths_.push_back(path.value());
+  const std::string decoded = DecodeUtf16(bytes.value());
+  TextScanner scanner(decoded.empty() ? bytes.value() : decoded);
+  const std::size_t first = materials_.size();
+  while (scanner.NextLine()) {
+    // Statements before the first newmtl are about nothing.
+    TextScanner line = scanner;
+    if (line.Word() == "newmtl") {
+      materials_.push_back({});
+      materials_.back().name = line.Remainder();
+      materials_.back().library = path.value();
+      materials_.back().line = line.line();
+      index_.emplace(materials_.back().name, materials_.size() - 1);
+    } else if (materials_.size() > first) {
+      ReadStatement(scanner, path.value());
+    }
+  }
+  return true;
+}
+
+void MtlLibraries::ReadStatement(TextScanner& scanner, const std::string& path) {
+  MtlMaterial& material = materials_.back();
+  const std::string_view key = scanner.Word();
+  for (const auto& [name, member] : kColours) {
+    if (key != name) continue;
+    if (const auto colour = ReadColour(scanner, key, path)) material.*member = colour;
+    return;
+  }
+  for (const auto& [name, member] : kNumbers) {
+    if (key != name) continue;
+    std::string_view word = scanner.Word();
+    if (key == "d" && word == "-halo") word = scanner.Word();
+    if (const auto number = ReadNumber(scanner, word, key, path)) material.*member = number;
+    return;
+  }
+  if (key == "map_Kd") {
+    material.map_kd = ReadMap(scanner, path);
+  } else if (std::find(std::begin(kOtherMaps), std::end(kOtherMaps), key) != std::end(kOtherMaps)) {
+    material.other_maps.emplace(key, ReadMap(scanner, path));
+  }
+}
+
+std::optional<Colour> MtlLibraries::ReadColour(TextScanner& scanner, std::string_view key,
+                                               const std::string& path) {
+  Colour colour(0.0);
+  for (int i = 0; i < 3; ++i) {
+    const std::string_view word = scanner.Word();
+    if (i == 1 && (word.empty() || word.starts_with('#'))) return Colour(colour.x);  // for all
+    const auto number = ReadNumber(scanner, word, key, path);
+    if (!number) return std::nullopt;
+    colour[i] = *number;
+  }
+  return colour;
+}
+
+std::optional<double> MtlLibraries::ReadNumber(TextScanner& scanner, std::string_view word,
+                                               std::string_view key, const std::string& path) {
+  const auto number = ParseWord<double>(word);
+  if (number && *number >= -1e6 && *number <= 1e9) return number;
+  files_.Warn(PlaceOf(path, scanner.line()), key,
+              fmt::format("expected a number in [-1e6, 1e9], found \"{}\"", Printable(word, 40)));
+  return std::nullopt;
+}
+
+MtlMap MtlLibraries::ReadMap(TextScanner& scanner, const std::string& path) {
+  MtlMap map;
+  map.line = scanner.line();
+  for (;;) {
+    TextScanner ahead = scanner;
+    const std::string_view word = ahead.Word();
+    const auto* const option =
+        std::find_if(std::begin(kMapOptions), std::end(kMapOptions),
+                     [&](const MapOption& known) { return known.name == word; });
+    if (option == std::end(kMapOptions)) break;
+    double numbers[3] = {};
+    int count = 0;
+    if (option->numbers == 0) map.is_clamped |= ahead.Word() == "on" && word == "-clamp";
+    scanner = ahead;
+    for (; count < option->numbers; ++count) {
+      const auto number = ahead.Number<double>();
+      if (!number || !(std::abs(*number) <= kMostScale)) break;
+      numbers[count] = *number;
+      scanner = ahead;
+    }
+    glm::vec2* const to = word == "-s" ? &map.scale : word == "-o" ? &map.offset : nullptr;
+    for (int i = 0; i < std::min(count, 2) && to != nullptr; ++i) {
+      (*to)[i] = static_cast<float>(numbers[i]);
+    }
+    if (option->changes_colour) {
+      files_.Warn(PlaceOf(path, map.line), "an option of a texture is not read", word);
+    }
+  }
+  map.file = scanner.Remainder();
+  return map;
+}
+
+// ---- Materials ----
+
+std::optional<std::size_t> MtlLibraries::Find(std::string_view name) const {
+  if (const auto same = index_.find(name); same != index_.end()) return same->second;
+  for (std::size_t i = 0; i < materials_.size(); ++i) {
+    if (WithoutComment(materials_[i].name) == WithoutComment(name)) return i;
+  }
+  return std::nullopt;
+}
+
+double MtlLibraries::OpacityOf(const MtlMaterial& from) {
+  const double opacity = std::clamp(from.d ? *from.d : 1 - from.tr.value_or(0), 0.0, 1.0);
+  const int illum = static_cast<int>(from.illum.value_or(2));
+  const bool is_glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
+  if (opacity > 0 || is_glass) return opacity;
+  // Some programs have written the one for the other, and nobody models what cannot be seen.
+  files_.Warn(PlaceOf(from.library, from.line), "material taken for opaque",
+              fmt::format("{} hides \"{}\" wholly", from.d ? "d 0" : "Tr 1", Printable(from.name)));
+  return 1;
+}
+
+std::shared_ptr<const Image> MtlLibraries::LoadImage(const MtlMaterial& from) {
+  const std::string& file = from.map_kd.file;
+  const std::string_view named = WithoutComment(file);
+  auto image = images_.Load(from.library, WithSlashes(file), files_);
+  if (!image && named != file) image = images_.Load(from.library, WithSlashes(named), files_);
+  if (image) return image.value();
+  files_.Warn(PlaceOf(from.library, from.map_kd.line), "map_Kd",
+              fmt::format("{}; untextured", image.error().message));
+  return nullptr;
+}
+
+Material MtlLibraries::ToMaterial(const MtlMaterial& from) {
+  Material material = PlainMaterial();
+  material.name = from.name;
+  const bool has_map = from.map_kd.line != 0;
+  // Many exporters leave Kd black beside a map.
+  const bool has_colour = from.kd && !(has_map && NotNegative(*from.kd) == Colour(0.0));
+  if (has_colour) material.base_colour = NotNegative(*from.kd);
+  if (auto image = has_map ? LoadImage(from) : nullptr) {
+    Texture texture;
+    texture.image = std::move(image);
+    texture.factor = has_colour ? NotNegative(*from.kd) : Colour(1.0);
+    if (from.map_kd.is_clamped) texture.wrap_u = texture.wrap_v = Wrap::kClamp;
+    material.base_colour = texture;
+  }
+  for (const auto& [statement, map] : from.other_maps) {
+    if (statement == "map_Ka" && map.file == from.map_kd.file) continue;  // says nothing more
+    files_.Warn(PlaceOf(from.library, map.line), fmt::format("{} is not read", statement));
+  }
+  material.emission = NotNegative(from.ke.value_or(Colour(0.0)));
+  const Colour specular = NotNegative(from.ks.value_or(Colour(0.0)));
+  const double illum = from.illum.value_or(2), shininess = from.ns.value_or(0);
+  if (illum >= 2 && shininess > 0) {
+    material.ks = std::max({specular.x, specular.y, specular.z});
+    material.shininess = shininess;
+  }
+  const double opacity = OpacityOf(from);
+  material.transmit = Colour(1 - opacity);
+  if (illum >= 3 && illum < 9) material.reflect = glm::min(specular, Colour(opacity));
+  if (opacity < 1) {
+    material.kd = opacity;
+    material.ior = std::clamp(from.ni.value_or(1), 1e-6, 1e6);
+  }
+  return material;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,78 @@
+// MTL, the material library of OBJ.
+#ifndef SHEAF_FORMATS_MTL_H_
+#define SHEAF_FORMATS_MTL_H_
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sheaf/scene.h"
+#include "src/formats/image.h"
+#include "src/formats/scene_files.h"
+#include "src/formats/text_scanner.h"
+
+namespace sheaf {
+
+// A statement about a texture.
+struct MtlMap {
+  std::size_t line = 0;   // 0: there is none
+  std::string file;       // the rest of the line, which may hold blanks
+  glm::vec2 scale{1.0f};  // of coordinates with v up; the offset comes after it
+  glm::vec2 offset{0.0f};
+  bool is_clamped = false;
+};
+
+// What a library says of a material.
+struct MtlMaterial {
+  std::string name, library;  // the path of the library's file
+  std::size_t line = 0;
+  std::optional<Colour> kd, ks, ke;
+  std::optional<double> ns, ni, d, tr, illum;
+  MtlMap map_kd;
+  std::map<std::string, MtlMap, std::less<>> other_maps;  // by statement; nothing here shows them
+};
+
+// The libraries of one OBJ. Whatever is wrong with them is a warning.
+class MtlLibraries {
+ public:
+  // `obj` is the file that names them.
+  MtlLibraries(const std::string& obj, SceneFiles& files) : obj_(obj), files_(files) {}
+
+  // The statement mtllib: one file whose name may hold blanks, or several.
+  void Read(std::string_view names, std::size_t line);
+
+  bool has_library() const { return !paths_.empty(); }
+  const std::vector<MtlMaterial>& materials() const { return materials_; }
+
+  // The first material of this name, which may have a comment behind it.
+  std::optional<std::size_t> Find(std::string_view name) const;
+
+  // What the material becomes, with its texture loaded: docs/formats.md, "OBJ and MTL".
+  Material ToMaterial(const MtlMaterial& from);
+
+ private:
+  bool ReadFile(std::string_view reference, std::string* failure);
+  void ReadStatement(TextScanner& scanner, const std::string& path);
+  std::optional<Colour> ReadColour(TextScanner& scanner, std::string_view key,
+                                   const std::string& path);
+  std::optional<double> ReadNumber(TextScanner& scanner, std::string_view word,
+                                   std::string_view key, const std::string& path);
+  MtlMap ReadMap(TextScanner& scanner, const std::string& path);
+  double OpacityOf(const MtlMaterial& from);
+  std::shared_ptr<const Image> LoadImage(const MtlMaterial& from);
+
+  const std::string& obj_;
+  SceneFiles& files_;
+  ImageCache images_;
+  std::vector<std::string> paths_;
+  std::vector<MtlMaterial> materials_;
+  std::map<std::string, std::size_t, std::less<>> index_;
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_FORMATS_MTL_H_
