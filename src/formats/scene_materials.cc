@@ -16,6 +16,8 @@ namespace {
 
 constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
 constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
+constexpr NumberRange kUnit{0.0, 1.0, "a number in [0, 1]"};
+constexpr NumberRange kPlacing{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kCells{kSmallestPositive, 65536.0, "a number in (0, 65536]"};
 
 enum class Written { kAlways, kUnlessDefault };
@@ -93,11 +95,25 @@ std::string_view NameOf(Choice value, const std::pair<std::string_view, Choice> 
 
 constexpr std::pair<std::string_view, Wrap> kWraps[] = {
     {"repeat", Wrap::kRepeat}, {"mirror", Wrap::kMirror}, {"clamp", Wrap::kClamp}};
+constexpr std::pair<std::string_view, AlphaMode> kAlphaModes[] = {
+    {"opaque", AlphaMode::kOpaque}, {"mask", AlphaMode::kMask}, {"blend", AlphaMode::kBlend}};
 constexpr std::pair<std::string_view, Filter> kFilters[] = {{"linear", Filter::kLinear},
                                                             {"nearest", Filter::kNearest}};
 
-// Nothing where the image cannot be had, which is an error.
-std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source) {
+TextureTransform ReadTextureTransform(const JsonCursor& value) {
+  TextureTransform transform;
+  JsonObject object(value);
+  ReadPair(object.Optional("offset"), kPlacing, "[along u, along v]", &transform.offset);
+  ReadPair(object.Optional("scale"), kPlacing, "[along u, along v]", &transform.scale);
+  object.Optional("rotation").Read(kPlacing, &transform.rotation);
+  object.Finish();
+  return transform;
+}
+
+// Nothing where the image cannot be had, which is an error. `usual` is how images are encoded that
+// do not say.
+std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source,
+                                   Transfer usual = Transfer::kSrgb) {
   Texture texture;
   JsonObject object(value);
   const JsonCursor image = object.Required("image");
@@ -121,10 +137,13 @@ std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source
     texture.wrap_v = texture.wrap_u;
   }
   ReadChoice(object.Optional("filter"), kFilters, &texture.filter);
-  bool is_srgb = true;
+  bool is_srgb = usual == Transfer::kSrgb;
   object.Optional("srgb").ReadBoolean(&is_srgb);
   texture.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
   ReadPictureColour(object.Optional("factor"), source->decode, &texture.factor);
+  if (const JsonCursor transform = object.Optional("transform"); transform.present()) {
+    texture.transform = ReadTextureTransform(transform);
+  }
   object.Finish();
   return texture.image ? std::optional(texture) : std::nullopt;
 }
@@ -153,6 +172,80 @@ void ReadBaseColour(const JsonCursor& value, ColourSource* source, Material* mat
   }
 }
 
+// {"texture": ..., and what `read_rest` reads}: of data that textures hold, which are linear.
+template <typename Map, typename F>
+void ReadMap(const JsonCursor& value, ColourSource* source, std::optional<Map>* out, F read_rest) {
+  if (!value.present()) return;
+  Map map;
+  JsonObject object(value);
+  const auto texture = ReadTexture(object.Required("texture"), source, Transfer::kLinear);
+  read_rest(object, map);
+  object.Finish();
+  if (!texture) return;
+  map.texture = *texture;
+  *out = std::move(map);
+}
+
+void ReadMaps(JsonObject& object, ColourSource* source, Material* material) {
+  if (const JsonCursor emission = object.Optional("emission_texture"); emission.present()) {
+    material->emission_texture = ReadTexture(emission, source);
+  }
+  ReadMap(object.Optional("metallic_roughness"), source, &material->metallic_roughness,
+          [](JsonObject& rest, MetallicRoughness& map) {
+            rest.Optional("metallic").Read(kUnit, &map.metallic);
+            rest.Optional("roughness").Read(kUnit, &map.roughness);
+          });
+  ReadMap(object.Optional("occlusion"), source, &material->occlusion,
+          [](JsonObject& rest, Occlusion& map) {
+            rest.Optional("strength").Read(kUnit, &map.strength);
+          });
+  ReadMap(
+      object.Optional("normal_map"), source, &material->normal_map,
+      [](JsonObject& rest, NormalMap& map) { rest.Optional("scale").Read(kPlacing, &map.scale); });
+  const JsonCursor alpha = object.Optional("alpha");
+  if (!alpha.present()) return;
+  JsonObject members(alpha);
+  ReadChoice(members.Required("mode"), kAlphaModes, &material->alpha.mode);
+  members.Optional("factor").Read(kUnit, &material->alpha.factor);
+  members.Optional("cutoff").Read(kUnit, &material->alpha.cutoff);
+  members.Finish();
+}
+
+Json TextureJson(const Texture& texture) {
+  Json json = {{"image", texture.image->name},
+               {"wrap", {NameOf(texture.wrap_u, kWraps), NameOf(texture.wrap_v, kWraps)}},
+               {"filter", NameOf(texture.filter, kFilters)},
+               {"srgb", texture.transfer == Transfer::kSrgb},
+               {"factor", VectorJson(texture.factor)}};
+  if (const TextureTransform& transform = texture.transform; transform != TextureTransform()) {
+    json["transform"] = {{"offset", {transform.offset.x, transform.offset.y}},
+                         {"scale", {transform.scale.x, transform.scale.y}},
+                         {"rotation", transform.rotation}};
+  }
+  return json;
+}
+
+void WriteMaps(const Material& material, Json* json) {
+  if (material.emission_texture) {
+    (*json)["emission_texture"] = TextureJson(*material.emission_texture);
+  }
+  if (const auto& map = material.metallic_roughness) {
+    (*json)["metallic_roughness"] = {{"texture", TextureJson(map->texture)},
+                                     {"metallic", map->metallic},
+                                     {"roughness", map->roughness}};
+  }
+  if (const auto& map = material.occlusion) {
+    (*json)["occlusion"] = {{"texture", TextureJson(map->texture)}, {"strength", map->strength}};
+  }
+  if (const auto& map = material.normal_map) {
+    (*json)["normal_map"] = {{"texture", TextureJson(map->texture)}, {"scale", map->scale}};
+  }
+  if (material.alpha.mode == AlphaMode::kOpaque) return;
+  (*json)["alpha"] = {{"mode", NameOf(material.alpha.mode, kAlphaModes)},
+                      {"factor", material.alpha.factor},
+                      {"cutoff", material.alpha.cutoff}};
+}
+
 Json BaseColourJson(const Material& material) {
   return Match(
       material.base_colour, [](const Colour& colour) { return VectorJson(colour); },
@@ -163,12 +256,7 @@ Json BaseColourJson(const Material& material) {
                   {"cells", {checker.cells.x, checker.cells.y}}}}};
       },
       [](const Texture& texture) -> Json {
-        return {{"texture",
-                 {{"image", texture.image->name},
-                  {"wrap", {NameOf(texture.wrap_u, kWraps), NameOf(texture.wrap_v, kWraps)}},
-                  {"filter", NameOf(texture.filter, kFilters)},
-                  {"srgb", texture.transfer == Transfer::kSrgb},
-                  {"factor", VectorJson(texture.factor)}}}};
+        return {{"texture", TextureJson(texture)}};
       });
 }
 
@@ -183,6 +271,7 @@ Material ReadMaterial(const JsonCursor& value, ColourSource* source, NameTable* 
   for (const Parameter& parameter : kParameters) {
     ReadParameter(object.Optional(parameter.key), parameter, &material);
   }
+  ReadMaps(object, source, &material);
   object.Finish();
   return material;
 }
@@ -191,6 +280,7 @@ Json MaterialJson(const Material& material) {
   Json json = {{"name", material.name}};
   json["base_colour"] = BaseColourJson(material);
   for (const Parameter& parameter : kParameters) WriteParameter(material, parameter, &json);
+  WriteMaps(material, &json);
   return json;
 }
 

@@ -13,6 +13,7 @@
 #include "src/core/match.h"
 #include "src/scene/direction.h"
 #include "src/scene/projection.h"
+#include "src/scene/textures.h"
 
 namespace sheaf {
 namespace {
@@ -82,29 +83,35 @@ class FirstFault {
   std::string text_;
 };
 
+void CheckTexture(const std::string& name, const Texture& texture, FirstFault& fault) {
+  fault.Components(name + ".factor", texture.factor, kAtLeastZero);
+  fault.Components(name + ".transform.offset", texture.transform.offset, kAny);
+  fault.Components(name + ".transform.scale", texture.transform.scale, kAny);
+  fault.Number(name + ".transform.rotation", texture.transform.rotation, kAny);
+  if (!texture.image) return fault.Fail(name + ".image is null");
+  const Image& image = *texture.image;
+  constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};
+  fault.Number(name + ".image.width", image.width, kSide);
+  fault.Number(name + ".image.height", image.height, kSide);
+  const auto texels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (!fault.found() && image.texels.size() != texels) {
+    fault.Fail(fmt::format("{}.image has {} texels, not {} x {}", name, image.texels.size(),
+                           image.width, image.height));
+  }
+}
+
 void Check(const Material& material, FirstFault& fault) {
-  Match(
-      material.base_colour,
-      [&](const Colour& colour) { fault.Components("base_colour", colour, kAtLeastZero); },
-      [&](const Checker& checker) {
-        fault.Components("base_colour.even", checker.even, kAtLeastZero);
-        fault.Components("base_colour.odd", checker.odd, kAtLeastZero);
-        fault.Components("base_colour.cells", checker.cells, kPositive);
-      },
-      [&](const Texture& texture) {
-        fault.Components("base_colour.factor", texture.factor, kAtLeastZero);
-        if (!texture.image) return fault.Fail("base_colour.image is null");
-        const Image& image = *texture.image;
-        constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};
-        fault.Number("base_colour.image.width", image.width, kSide);
-        fault.Number("base_colour.image.height", image.height, kSide);
-        const auto texels =
-            static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-        if (!fault.found() && image.texels.size() != texels) {
-          fault.Fail(fmt::format("base_colour.image has {} texels, not {} x {}",
-                                 image.texels.size(), image.width, image.height));
-        }
-      });
+  if (const auto* colour = std::get_if<Colour>(&material.base_colour)) {
+    fault.Components("base_colour", *colour, kAtLeastZero);
+  } else if (const auto* checker = std::get_if<Checker>(&material.base_colour)) {
+    fault.Components("base_colour.even", checker->even, kAtLeastZero);
+    fault.Components("base_colour.odd", checker->odd, kAtLeastZero);
+    fault.Components("base_colour.cells", checker->cells, kPositive);
+  }
+  ForEachTexture(material, [&](const char* name, const Texture& texture) {
+    CheckTexture(name, texture, fault);
+  });
   fault.Components("emission", material.emission, kAtLeastZero);
   fault.Number("ambient", material.ambient, kAtLeastZero);
   fault.Number("kd", material.kd, kAtLeastZero);
@@ -113,6 +120,14 @@ void Check(const Material& material, FirstFault& fault) {
   fault.Components("reflect", material.reflect, kShare);
   fault.Components("transmit", material.transmit, kShare);
   fault.Number("ior", material.ior, kPositive);
+  if (const auto& gloss = material.metallic_roughness) {
+    fault.Number("metallic_roughness.metallic", gloss->metallic, kShare);
+    fault.Number("metallic_roughness.roughness", gloss->roughness, kShare);
+  }
+  if (material.occlusion) fault.Number("occlusion.strength", material.occlusion->strength, kShare);
+  if (material.normal_map) fault.Number("normal_map.scale", material.normal_map->scale, kAny);
+  fault.Number("alpha.factor", material.alpha.factor, kShare);
+  fault.Number("alpha.cutoff", material.alpha.cutoff, kShare);
 }
 
 void CheckMesh(const Mesh& mesh, FirstFault& fault) {

@@ -41,11 +41,20 @@ enum class Filter { kNearest, kLinear };
 inline constexpr int kMaxTextureSide = 16384;
 
 // A picture to take colours from. Rows from the top; a texel's lowest byte is red, then green and
-// blue; the highest counts for nothing.
+// blue; the highest is alpha, which counts where a material's `alpha` asks for it.
 struct Image {
   std::string name;                   // for messages and for files made of it; may be empty
   int width = 0, height = 0;          // [1, kMaxTextureSide]
   std::vector<std::uint32_t> texels;  // width * height
+};
+
+// Where on an image a surface coordinate lies: (u, v) times `scale`, turned by `rotation`, plus
+// `offset` (KHR_texture_transform).
+struct TextureTransform {
+  glm::dvec2 offset{0.0}, scale{1.0};  // finite
+  double rotation = 0.0;  // degrees, finite; (1, 0) turns to (cos, -sin), which is up on the image
+
+  bool operator==(const TextureTransform&) const = default;
 };
 
 // An image on a surface, u to the right and v down, once across the unit interval of each. Its
@@ -56,6 +65,41 @@ struct Texture {
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
   Filter filter = Filter::kLinear;
   Colour factor{1.0};
+  TextureTransform transform = {};
+};
+
+// How metallic and how rough a surface is, point by point: the texture's blue times `metallic` and
+// its green times `roughness` (glTF 2.0, 3.9.2). Turned into Whitted's terms at each point, as
+// docs/formats.md has it; the material's `kd` and `transmit` are then those of what is no metal,
+// and its `ks`, `shininess` and `reflect` count for nothing.
+struct MetallicRoughness {
+  Texture texture;                         // its factor counts for nothing
+  double metallic = 1.0, roughness = 1.0;  // [0, 1]
+};
+
+// The share of the ambient light that reaches a point: 1 + strength * (the texture's red - 1).
+struct Occlusion {
+  Texture texture;        // its factor counts for nothing
+  double strength = 1.0;  // [0, 1]
+};
+
+// Shading normals in tangent space, 2 * texel - 1, of which x and y are multiplied by `scale`: x
+// along the surface's u, y against its v. For triangles with surface coordinates; elsewhere it
+// counts for nothing.
+struct NormalMap {
+  Texture texture;     // its factor counts for nothing
+  double scale = 1.0;  // finite
+};
+
+// How much of a surface is there. kMask: all of it where alpha is at least `cutoff`, nothing
+// elsewhere. kBlend: a share of alpha; the rest of a ray goes straight on, as a ray one deeper.
+// Shadows follow.
+enum class AlphaMode { kOpaque, kMask, kBlend };
+
+struct Alpha {
+  AlphaMode mode = AlphaMode::kOpaque;
+  double factor = 1.0;  // [0, 1]: alpha, times that of the texture of the base colour
+  double cutoff = 0.5;  // [0, 1]
 };
 
 // Whitted's material: what the surface itself sends to the eye, and what it passes on.
@@ -70,6 +114,12 @@ struct Material {
   Colour reflect{0.0};     // mirror reflectance, [0, 1]
   Colour transmit{0.0};  // [0, 1]: share that meets a dielectric interface and is split by Fresnel
   double ior = 1.0;      // index of refraction inside over outside, > 0
+  // What varies from point to point besides the base colour.
+  std::optional<Texture> emission_texture = std::nullopt;  // times `emission`
+  std::optional<MetallicRoughness> metallic_roughness = std::nullopt;
+  std::optional<Occlusion> occlusion = std::nullopt;
+  std::optional<NormalMap> normal_map = std::nullopt;
+  Alpha alpha = {};
 };
 
 struct Sphere {
