@@ -42,6 +42,13 @@ HWY_INLINE void LoadPattern(D d, const MaterialData<Real>& material,
   b = hn::IfThenElse(odd, hn::Set(d, material.odd[2]), b);
 }
 
+// A shading term: the material's own, or where these vary that of each surface, from `field`.
+template <class D, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> LoadTerm(D d, const MaterialData<Real>& material, Real term,
+                               const Real* HWY_RESTRICT field, std::uint32_t i) {
+  return material.needs & kNeedsTerms ? hn::LoadU(d, field + i) : hn::Set(d, term);
+}
+
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE void LoadBaseColour(D d, const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t i, V& r, V& g,

@@ -55,26 +55,49 @@ HWY_INLINE V Exp2(D d, V y) {
                      hn::Add(hn::BitCast(du, power), hn::ShiftLeft<52>(hn::BitCast(du, shifted))));
 }
 
-// x in [0, 1], p >= 0 for all lanes.
+// The exponents of a vector: one for all lanes, or one each.
+template <typename Real>
+struct OfAllLanes {
+  Real p;
+
+  template <class D>
+  HWY_INLINE hn::Vec<D> Load(D d, std::uint32_t /*lane*/) const {
+    return hn::Set(d, p);
+  }
+};
+template <typename Real>
+struct OfLanes {
+  const Real* p;  // not aligned
+
+  template <class D>
+  HWY_INLINE hn::Vec<D> Load(D d, std::uint32_t lane) const {
+    return hn::LoadU(d, p + lane);
+  }
+};
+
+// x in [0, 1], exponents >= 0.
 #ifdef SHEAF_FAST
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V Pow(D d, V x, float p) {
-  const V power = hn::Exp(d, hn::Mul(hn::Set(d, p), hn::Log(d, x)));
+template <class D, class V = hn::Vec<D>, class Exponents>
+HWY_INLINE V Pow(D d, V x, Exponents exponents) {
+  const V p = exponents.Load(d, 0);
+  const V power = hn::Exp(d, hn::Mul(p, hn::Log(d, x)));
   const auto is_normal = hn::Ge(x, hn::Set(d, std::numeric_limits<float>::min()));
-  return hn::IfThenElse(is_normal, power, hn::Set(d, p == 0 ? 1.0f : 0.0f));
+  const V at_zero = hn::IfThenElseZero(hn::Eq(p, hn::Zero(d)), hn::Set(d, 1.0f));
+  return hn::IfThenElse(is_normal, power, at_zero);
 }
 #else
-template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE V Pow(D d, V x, Real p) {
+template <class D, class V = hn::Vec<D>, class Exponents, typename Real = hn::TFromD<D>>
+HWY_INLINE V Pow(D d, V x, Exponents exponents) {
   const WideLanes<Real> dw;
   const NarrowLanes<Real> dn;
   const auto tiny = hn::Set(dw, kPowTiny), lowest = hn::Set(dw, kPowLowest);
-  const auto at_zero = hn::Set(dw, p == 0 ? 1.0 : 0.0);
   alignas(kAlignment) Real lanes[kMaxLanes];
   hn::Store(x, d, lanes);
   for (std::uint32_t lane = 0; lane < LaneCount(d); lane += LaneCount(dn)) {
     const auto base = Widen(hn::Load(dn, lanes + lane));
-    const auto y = hn::Mul(hn::Set(dw, static_cast<double>(p)), Log2<Real>(dw, base));
+    const auto p = Widen(exponents.Load(dn, lane));
+    const auto at_zero = hn::IfThenElseZero(hn::Eq(p, hn::Zero(dw)), hn::Set(dw, 1.0));
+    const auto y = hn::Mul(p, Log2<Real>(dw, base));
     const auto power = Exp2<Real>(dw, hn::IfThenElse(hn::Gt(y, lowest), y, lowest));
     const auto result = hn::IfThenElse(hn::Lt(base, tiny), at_zero, power);
     hn::Store(Narrow<Real>(result), dn, lanes + lane);

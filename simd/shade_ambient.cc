@@ -19,13 +19,15 @@ void ShadeAmbientLanes(const MaterialData<Real>& material, const SurfaceView<Rea
     const auto local = HasLocalLight(d, material, surfaces, i);
     V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
     LoadBaseColour(d, material, surfaces, i, r, g, b);
-    const auto ambient = [&](int channel, V base) HWY_ATTR {
-      const V reflected = hn::Mul(hn::Set(d, material.ambient[channel]), base);
-      return hn::IfThenElseZero(local, hn::Add(reflected, hn::Set(d, material.emission[channel])));
+    const auto ambient = [&](int channel, V base, const Real* ambients,
+                             const Real* emissions) HWY_ATTR {
+      const V reflected = LoadTerm(d, material, material.ambient[channel], ambients, i);
+      const V emission = LoadTerm(d, material, material.emission[channel], emissions, i);
+      return hn::IfThenElseZero(local, hn::Add(hn::Mul(reflected, base), emission));
     };
-    hn::StoreU(ambient(0, r), d, colours.r + i);
-    hn::StoreU(ambient(1, g), d, colours.g + i);
-    hn::StoreU(ambient(2, b), d, colours.b + i);
+    hn::StoreU(ambient(0, r, surfaces.ambient_r, surfaces.emission_r), d, colours.r + i);
+    hn::StoreU(ambient(1, g, surfaces.ambient_g, surfaces.emission_g), d, colours.g + i);
+    hn::StoreU(ambient(2, b, surfaces.ambient_b, surfaces.emission_b), d, colours.b + i);
   }
 }
 SHEAF_NAME_KERNELS(ShadeAmbient);

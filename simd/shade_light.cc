@@ -15,7 +15,7 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 template <typename Real>
 void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
                      const SurfaceView<Real>& surfaces, const IncidenceView<Real>& incidence,
-                     const std::uint32_t* lit, std::uint32_t count,
+                     const std::uint32_t* lit, const Real* shares, std::uint32_t count,
                      const ColourOutput<Real>& colours) {
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
@@ -33,7 +33,7 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     if constexpr (kIsFast) ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
     V attenuation = hn::Div(one, falloff);
     if (light.is_spot) attenuation = hn::Mul(attenuation, ConeShare(d, light, lx, ly, lz));
-    const V diffuse = hn::Mul(hn::Set(d, material.kd), n_dot_l);
+    const V diffuse = hn::Mul(LoadTerm(d, material, material.kd, surfaces.kd, i), n_dot_l);
     V highlight = hn::Zero(d);
     if (material.needs & kNeedsHighlight) {
       V hx = hn::Sub(lx, hn::LoadU(d, surfaces.direction_x + i));
@@ -46,13 +46,17 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
       // Rounding can carry it past 1; NaN, from an h of length 0, counts as 0.
       const V below_one = hn::IfThenElse(hn::Lt(n_dot_h, one), n_dot_h, one);
       const V clamped = hn::IfThenElseZero(hn::Gt(n_dot_h, hn::Zero(d)), below_one);
-      highlight = hn::Mul(hn::Set(d, material.ks), Pow(d, clamped, material.shininess));
+      const V power = material.needs & kNeedsTerms
+                          ? Pow(d, clamped, OfLanes<Real>{surfaces.shininess + i})
+                          : Pow(d, clamped, OfAllLanes<Real>{material.shininess});
+      highlight = hn::Mul(LoadTerm(d, material, material.ks, surfaces.ks, i), power);
     }
     V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
     LoadBaseColour(d, material, surfaces, i, r, g, b);
     const auto add = [&](int channel, V base, Real* HWY_RESTRICT sum) HWY_ATTR {
       const V light_here = hn::Mul(hn::Set(d, light.rgb[channel]), attenuation);
-      const V added = hn::Mul(light_here, hn::Add(hn::Mul(base, diffuse), highlight));
+      V added = hn::Mul(light_here, hn::Add(hn::Mul(base, diffuse), highlight));
+      if (shares) added = hn::Mul(added, hn::LoadU(d, shares + i));
       const V before = hn::LoadU(d, sum + i);
       hn::StoreU(hn::IfThenElse(lanes, hn::Add(before, added), before), d, sum + i);
     };

@@ -17,6 +17,23 @@ inline constexpr std::uint32_t kNeedsTransmission = 16;  // Fresnel's split
 inline constexpr std::uint32_t kNeedsNormals = 32;       // shading normals besides the faces'
 inline constexpr std::uint32_t kNeedsTint = 64;          // a texture, or colours of vertices
 inline constexpr std::uint32_t kNeedsAll = 127;
+// Shading terms that vary from point to point: SurfaceFields has them. Not among all, because it is
+// the material's textures that make them.
+inline constexpr std::uint32_t kNeedsTerms = 128;
+
+inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
+enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };
+
+// What textures say of a material point by point, besides its base colour: src/scalar/finish.h.
+template <typename Real>
+struct FinishData {
+  // Indices into the frame's textures.
+  std::uint32_t emission = kNoTexture, metallic_roughness = kNoTexture, occlusion = kNoTexture,
+                normals = kNoTexture;
+  Real metallic = 0, roughness = 0, occlusion_strength = 0, normal_scale = 0;
+  AlphaUse alpha = AlphaUse::kOpaque;
+  Real alpha_factor = 1, alpha_cutoff = 0;
+};
 
 template <typename Real>
 struct MaterialData {
@@ -30,6 +47,7 @@ struct MaterialData {
   Real kd, ks, shininess;
   Real reflect[3], transmit[3];
   Real ior;
+  FinishData<Real> finish;
 };
 
 template <typename Real>
@@ -37,10 +55,25 @@ constexpr bool AnyPositive(const Real (&c)[3]) {
   return c[0] > 0 || c[1] > 0 || c[2] > 0;
 }
 
+// What the textures besides that of the base colour ask for.
+template <typename Real>
+constexpr std::uint32_t NeedsOf(const FinishData<Real>& finish) {
+  const bool is_glossy = finish.metallic_roughness != kNoTexture;
+  const bool has_alpha = finish.alpha != AlphaUse::kOpaque;
+  const bool varies =
+      is_glossy || has_alpha || finish.emission != kNoTexture || finish.occlusion != kNoTexture;
+  const bool is_bumpy = finish.normals != kNoTexture;
+  return (varies ? kNeedsTerms | kNeedsCoordinates : 0) |
+         (is_bumpy ? kNeedsNormals | kNeedsCoordinates : 0) |
+         (is_glossy ? kNeedsLights | kNeedsHighlight | kNeedsChildren : 0) |
+         (has_alpha ? kNeedsChildren | kNeedsTransmission : 0);
+}
+
 template <typename Real>
 constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
   const bool transmits = AnyPositive(material.transmit);
-  return (material.kind != BaseColour::kConstant ? kNeedsCoordinates : 0) |
+  return NeedsOf(material.finish) |
+         (material.kind != BaseColour::kConstant ? kNeedsCoordinates : 0) |
          (material.kd > 0 || material.ks > 0 ? kNeedsLights : 0) |
          (material.ks > 0 ? kNeedsHighlight : 0) |
          (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
@@ -61,6 +94,9 @@ struct TextureData {
   const Real* decode;  // linear light by byte, 256 of them
   TextureWrap wrap_u, wrap_v;
   TextureFilter filter;
+  // Where the surface's (u, v) lies on the image: rows of a, b, c with a u + b v + c.
+  bool is_moved = false;
+  Real to_u[3] = {}, to_v[3] = {};
 };
 
 enum class LightKind : std::uint32_t {

@@ -170,9 +170,18 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
       at += CountLanes(d, kept);
     };
 
+    const Real* const reflects[3] = {surfaces.reflect_r, surfaces.reflect_g, surfaces.reflect_b};
+    const Real* const transmits_at[3] = {surfaces.transmit_r, surfaces.transmit_g,
+                                         surfaces.transmit_b};
+    const auto reflect = [&](int channel) HWY_ATTR {
+      return LoadTerm(d, material, material.reflect[channel], reflects[channel], i);
+    };
+    const auto transmit = [&](int channel) HWY_ATTR {
+      return LoadTerm(d, material, material.transmit[channel], transmits_at[channel], i);
+    };
     const auto reflected_throughput = [&](V parent_throughput, int channel) HWY_ATTR {
-      const V transmit = hn::Mul(hn::Set(d, material.transmit[channel]), reflectance);
-      return hn::Mul(parent_throughput, hn::Add(hn::Set(d, material.reflect[channel]), transmit));
+      const V of_glass = hn::Mul(transmit(channel), reflectance);
+      return hn::Mul(parent_throughput, hn::Add(reflect(channel), of_glass));
     };
     const V twice = hn::Mul(hn::Set(d, Real(2)), cos_i);
     append(reflected_throughput(throughput_r, 0), reflected_throughput(throughput_g, 1),
@@ -183,7 +192,7 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
 
     if (hn::AllTrue(d, is_total)) continue;
     const auto refracted_throughput = [&](V parent_throughput, int channel) HWY_ATTR {
-      const V share = hn::Mul(hn::Set(d, material.transmit[channel]), hn::Sub(one, reflectance));
+      const V share = hn::Mul(transmit(channel), hn::Sub(one, reflectance));
       return hn::IfThenZeroElse(is_total, hn::Mul(parent_throughput, share));
     };
     const V bend = hn::Sub(hn::Mul(eta, cos_i), cos_t);

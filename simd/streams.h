@@ -89,6 +89,12 @@ struct SurfaceFields {
   Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
   Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
   Field<std::uint32_t> ray;     // position in the ray stream
+  // With kNeedsTerms, what takes the place of the material's members of these names.
+  Field<Real> ambient_r, ambient_g, ambient_b;
+  Field<Real> emission_r, emission_g, emission_b;
+  Field<Real> kd, ks, shininess;
+  Field<Real> reflect_r, reflect_g, reflect_b;
+  Field<Real> transmit_r, transmit_g, transmit_b;
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -97,7 +103,12 @@ struct SurfaceFields {
       &SurfaceFields::direction_x, &SurfaceFields::direction_y, &SurfaceFields::direction_z,
       &SurfaceFields::u, &SurfaceFields::v, &SurfaceFields::offset, &SurfaceFields::source,
       &SurfaceFields::ray, &SurfaceFields::face_x, &SurfaceFields::face_y, &SurfaceFields::face_z,
-      &SurfaceFields::tint_r, &SurfaceFields::tint_g, &SurfaceFields::tint_b);
+      &SurfaceFields::tint_r, &SurfaceFields::tint_g, &SurfaceFields::tint_b,
+      &SurfaceFields::ambient_r, &SurfaceFields::ambient_g, &SurfaceFields::ambient_b,
+      &SurfaceFields::emission_r, &SurfaceFields::emission_g, &SurfaceFields::emission_b,
+      &SurfaceFields::kd, &SurfaceFields::ks, &SurfaceFields::shininess, &SurfaceFields::reflect_r,
+      &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
+      &SurfaceFields::transmit_g, &SurfaceFields::transmit_b);
 };
 
 // Linear RGB, one an element.

@@ -137,7 +137,8 @@ TEST_CASE("ambient light is ka times the base colour, with no light at all") {
   CHECK(colour.y == 0.1f);
   CHECK(colour.z == 0.125f);
   RayCounts tally;
-  const auto local = scalar::LocalLight(FrameView<float>{}, material, Floor(), tally);
+  const auto local = scalar::LocalLight(FrameView<float>{}, material, material,
+                                        scalar::PatternAt(material, Floor()), Floor(), tally);
   CHECK(local.x == 0.1f);
   CHECK(local.z == 0.125f);
 }
@@ -157,7 +158,8 @@ Vec3<float> UnderOneLight(const LightData<float>& light, const MaterialData<floa
   Surface<float> surface = Floor();
   surface.source = 99;
   RayCounts tally;
-  return scalar::LocalLight(frame, material, surface, tally);
+  return scalar::LocalLight(frame, material, material, scalar::PatternAt(material, surface),
+                            surface, tally);
 }
 
 TEST_CASE("a light at, below or behind the surface gives nothing and no NaN") {

@@ -17,6 +17,7 @@
 #include "src/formats/read_scene.h"
 #include "src/formats/write_scene_json.h"
 #include "src/scene/srgb.h"
+#include "src/scene/textures.h"
 
 namespace sheaf {
 namespace {
@@ -30,12 +31,13 @@ struct ConvertRequest {
 
 // ---- Scenes ----
 
-Status WriteImage(const Image& image, Transfer transfer, const std::string& path) {
-  Picture8 picture{image.width, image.height, {}};
-  picture.rgb.reserve(3 * image.texels.size());
+// With alpha only where it counts.
+Status WriteImage(const Image& image, Transfer transfer, int channels, const std::string& path) {
+  Picture8 picture{image.width, image.height, {}, channels};
+  picture.rgb.reserve(static_cast<std::size_t>(channels) * image.texels.size());
   for (const std::uint32_t texel : image.texels) {
-    for (const int shift : {0, 8, 16}) {
-      picture.rgb.push_back(static_cast<std::uint8_t>(texel >> shift & 255));
+    for (int c = 0; c < channels; ++c) {
+      picture.rgb.push_back(static_cast<std::uint8_t>(texel >> (8 * c) & 255));
     }
   }
   return WritePng(picture, transfer, path);
@@ -45,18 +47,22 @@ Status WriteImage(const Image& image, Transfer transfer, const std::string& path
 struct TextureFile {
   std::string name;
   Transfer transfer = Transfer::kSrgb;  // of the first that uses the image
+  int channels = 3;
 };
 using TextureFiles = std::map<const Image*, TextureFile>;
 
 TextureFiles NameTextures(const Scene& scene, const std::filesystem::path& output) {
   TextureFiles files;
   for (const Material& material : scene.materials) {
-    const auto* texture = std::get_if<Texture>(&material.base_colour);
-    if (texture == nullptr) continue;
-    const auto [entry, is_new] = files.try_emplace(texture->image.get());
-    if (!is_new) continue;
-    entry->second = {fmt::format("{}-texture-{}.png", output.stem().string(), files.size()),
-                     texture->transfer};
+    ForEachTexture(material, [&](const char* /*name*/, const Texture& texture) {
+      const auto [entry, is_new] = files.try_emplace(texture.image.get());
+      if (is_new) {
+        entry->second = {fmt::format("{}-texture-{}.png", output.stem().string(), files.size()),
+                         texture.transfer};
+      }
+      const bool is_base = std::get_if<Texture>(&material.base_colour) == &texture;
+      if (is_base && material.alpha.mode != AlphaMode::kOpaque) entry->second.channels = 4;
+    });
   }
   return files;
 }
@@ -68,15 +74,17 @@ std::string PathBeside(const std::string& output, const std::string& name) {
 Status WriteTextures(const TextureFiles& files, const std::string& output, Scene* scene) {
   std::map<const Image*, std::shared_ptr<const Image>> renamed;
   for (const auto& [image, file] : files) {
-    const Status status = WriteImage(*image, file.transfer, PathBeside(output, file.name));
+    const Status status =
+        WriteImage(*image, file.transfer, file.channels, PathBeside(output, file.name));
     if (!status) return status;
     Image copy = *image;
     copy.name = file.name;
     renamed[image] = std::make_shared<const Image>(std::move(copy));
   }
   for (Material& material : scene->materials) {
-    auto* texture = std::get_if<Texture>(&material.base_colour);
-    if (texture != nullptr) texture->image = renamed[texture->image.get()];
+    ForEachTexture(material, [&](const char* /*name*/, Texture& texture) {
+      texture.image = renamed[texture.image.get()];
+    });
   }
   return Done{};
 }

@@ -7,6 +7,7 @@
 
 #include "src/scene/projection.h"
 #include "src/scene/shapes.h"
+#include "src/scene/textures.h"
 
 namespace sheaf {
 namespace {
@@ -43,7 +44,8 @@ SceneSummary Summarize(const Scene& scene) {
     return std::any_of(scene.cameras.begin(), scene.cameras.end(), test);
   };
   const Colour ambient_light = scene.settings.ambient.value_or(scene.settings.background);
-  const bool lit = any_material([](const Material& m) { return m.kd > 0.0 || m.ks > 0.0; });
+  const bool lit = any_material(
+      [](const Material& m) { return m.kd > 0.0 || m.ks > 0.0 || m.metallic_roughness; });
   summary.features = {
       {"spheres", summary.spheres > 0},
       {"triangles", summary.triangles > 0},
@@ -52,8 +54,13 @@ SceneSummary Summarize(const Scene& scene) {
          return std::holds_alternative<Checker>(m.base_colour);
        })},
       {"image textures", any_material([](const Material& m) {
-         return std::holds_alternative<Texture>(m.base_colour);
+         bool has_texture = false;
+         ForEachTexture(
+             m, [&](const char* /*name*/, const Texture& /*texture*/) { has_texture = true; });
+         return has_texture;
        })},
+      {"normal maps", any_material([](const Material& m) { return m.normal_map.has_value(); })},
+      {"alpha", any_material([](const Material& m) { return m.alpha.mode != AlphaMode::kOpaque; })},
       {"smooth normals", any_mesh([](const Mesh& m) { return !m.normals.empty(); })},
       {"vertex colours", any_mesh([](const Mesh& m) { return !m.colours.empty(); })},
       {"emission", any_material([](const Material& m) { return !IsBlack(m.emission); })},
@@ -69,9 +76,11 @@ SceneSummary Summarize(const Scene& scene) {
          return std::holds_alternative<DirectionalLight>(l.source);
        })},
       {"shadows", lit && any_light([](const Light& l) { return l.casts_shadows; })},
-      {"highlights",
-       !scene.lights.empty() && any_material([](const Material& m) { return m.ks > 0.0; })},
-      {"mirror reflection", any_material([](const Material& m) { return !IsBlack(m.reflect); })},
+      {"highlights", !scene.lights.empty() && any_material([](const Material& m) {
+         return m.ks > 0.0 || m.metallic_roughness;
+       })},
+      {"mirror reflection",
+       any_material([](const Material& m) { return !IsBlack(m.reflect) || m.metallic_roughness; })},
       {"refraction and Fresnel reflection",
        any_material([](const Material& m) { return !IsBlack(m.transmit); })},
   };

@@ -26,10 +26,11 @@ namespace {
 // Owns libpng's state and the file; libpng keeps pointers into both, so that it never moves.
 class PngWriter {
  public:
-  PngWriter(AtomicFile file, std::string path, const PictureSpec& spec)
+  PngWriter(AtomicFile file, std::string path, const PictureSpec& spec, int channels)
       : path_(std::move(path)),
         file_(std::move(file)),
         spec_(spec),
+        channels_(channels),
         rows_left_(spec.window.height()),
         png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, &OnPngError,
                                      &OnPngWarning)) {
@@ -48,7 +49,7 @@ class PngWriter {
     return StatusOf(EncodeHeader());
   }
 
-  // The next row from the top: 3 * width bytes, or pairs of them, the higher first.
+  // The next row from the top: channels * width bytes, or pairs of them, the higher first.
   Status WriteRow(const std::uint8_t* rgb) {
     assert(rows_left_ > 0);
     --rows_left_;
@@ -73,8 +74,8 @@ class PngWriter {
     png_set_compression_level(png_, 4);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(spec_.window.width()),
                  static_cast<png_uint_32>(spec_.window.height()), spec_.bits == 16 ? 16 : 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+                 channels_ == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     // Without either, a viewer takes bytes for sRGB.
     if (spec_.values != Values::kNumbers) {
       if (spec_.transfer == Transfer::kSrgb) {
@@ -129,16 +130,17 @@ class PngWriter {
   std::optional<Error> error_;  // the first failed write
   PictureSpec spec_;
   PictureMetadata texts_;
-  int rows_left_;
+  int channels_, rows_left_;
   PngComplaint complaint_;
   png_structp png_;
   png_infop info_ = nullptr;
 };
 
-Result<std::unique_ptr<PngWriter>> OpenPng(const std::string& path, const PictureSpec& spec) {
+Result<std::unique_ptr<PngWriter>> OpenPng(const std::string& path, const PictureSpec& spec,
+                                           int channels = 3) {
   Result<AtomicFile> file = AtomicFile::Create(path);
   if (!file) return file.error();
-  auto writer = std::make_unique<PngWriter>(std::move(file).value(), path, spec);
+  auto writer = std::make_unique<PngWriter>(std::move(file).value(), path, spec, channels);
   const Status begun = writer->WriteHeader();
   if (!begun) return begun.error();
   return writer;
@@ -209,9 +211,10 @@ NewEncoder CreatePngEncoder(const std::string& path, const PictureSpec& spec) {
 
 Status WritePng(const Picture8& picture, Transfer transfer, const std::string& path) {
   const Result<std::unique_ptr<PngWriter>> writer =
-      OpenPng(path, WholePicture(picture.width, picture.height, transfer));
+      OpenPng(path, WholePicture(picture.width, picture.height, transfer), picture.channels);
   if (!writer) return writer.error();
-  const std::size_t stride = 3 * static_cast<std::size_t>(picture.width);
+  const std::size_t stride =
+      static_cast<std::size_t>(picture.channels) * static_cast<std::size_t>(picture.width);
   for (int y = 0; y < picture.height; ++y) {
     const Status written =
         writer.value()->WriteRow(picture.rgb.data() + stride * static_cast<std::size_t>(y));

@@ -16,7 +16,8 @@ namespace sheaf {
 // An 8-bit picture as it lies in the file: no gamma applied.
 struct Picture8 {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // 3 * width * height, interleaved, rows from the top
+  std::vector<std::uint8_t> rgb;  // channels * width * height, interleaved, rows from the top
+  int channels = 3;               // or 4, with alpha; read pictures have 3
 };
 
 // Writes a picture of 8 or 16 bits a channel row by row. Its transfer is recorded in the file: an

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "src/scene/shapes.h"
+#include "src/scene/textures.h"
 
 namespace sheaf {
 namespace {
@@ -13,7 +14,10 @@ namespace {
 VertexAttributes AttributesOf(const Scene& scene) {
   VertexAttributes attributes;
   for (const Material& material : scene.materials) {
-    attributes.has_coordinates |= !std::holds_alternative<Colour>(material.base_colour);
+    attributes.has_coordinates |= std::holds_alternative<Checker>(material.base_colour);
+    ForEachTexture(material, [&](const char* /*name*/, const Texture& /*texture*/) {
+      attributes.has_coordinates = true;
+    });
   }
   for (const Object& object : scene.objects) {
     const auto* mesh = std::get_if<Mesh>(&object.shape);

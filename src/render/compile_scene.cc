@@ -13,6 +13,7 @@
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
+#include "src/scalar/sin_cos.h"
 #include "src/scene/projection.h"
 #include "src/scene/srgb.h"
 
@@ -63,7 +64,6 @@ MaterialData<Real> CompileMaterial(const Material& material, const Settings& set
   Store(material.reflect, data.reflect);
   Store(material.transmit, data.transmit);
   data.ior = static_cast<Real>(material.ior);
-  data.needs = NeedsOf(data);
   return data;
 }
 
@@ -90,16 +90,69 @@ TextureWrap WrapOf(Wrap wrap) {
   return TextureWrap::kClamp;
 }
 
+// Where (u, v) lies on the image, as TextureTransform has it.
 template <typename Real>
-void CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
+void StoreTransform(const TextureTransform& transform, TextureData<Real>& data) {
+  if (transform == TextureTransform()) return;
+  const auto [sine, cosine] = scalar::SinCosOf(transform.rotation / 90);
+  const glm::dvec2 scale = transform.scale, offset = transform.offset;
+  const double to_u[3] = {cosine * scale.x, sine * scale.y, offset.x};
+  const double to_v[3] = {-sine * scale.x, cosine * scale.y, offset.y};
+  data.is_moved = true;
+  for (int i = 0; i < 3; ++i) {
+    data.to_u[i] = static_cast<Real>(to_u[i]);
+    data.to_v[i] = static_cast<Real>(to_v[i]);
+  }
+}
+
+// The index of the texture among the compiled ones.
+template <typename Real>
+std::uint32_t CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
   std::vector<Real>& decode = compiled.decode[static_cast<int>(texture.transfer)];
   if (decode.empty()) decode = DecodeTable<Real>(texture.transfer);
   const Image& image = *texture.image;
   compiled.images.push_back(texture.image);
-  compiled.textures.push_back(
-      {image.texels.data(), image.width, image.height, decode.data(), WrapOf(texture.wrap_u),
-       WrapOf(texture.wrap_v),
-       texture.filter == Filter::kNearest ? TextureFilter::kNearest : TextureFilter::kLinear});
+  TextureData<Real> data{
+      image.texels.data(),
+      image.width,
+      image.height,
+      decode.data(),
+      WrapOf(texture.wrap_u),
+      WrapOf(texture.wrap_v),
+      texture.filter == Filter::kNearest ? TextureFilter::kNearest : TextureFilter::kLinear};
+  StoreTransform(texture.transform, data);
+  compiled.textures.push_back(data);
+  return static_cast<std::uint32_t>(compiled.textures.size()) - 1;
+}
+
+// What the textures besides that of the base colour say.
+template <typename Real>
+void CompileFinish(const Material& material, CompiledScene<Real>& compiled,
+                   MaterialData<Real>& data) {
+  FinishData<Real>& finish = data.finish;
+  if (const auto& texture = material.emission_texture) {
+    finish.emission = CompileTexture(*texture, compiled);
+    for (int i = 0; i < 3; ++i) data.emission[i] *= static_cast<Real>(texture->factor[i]);
+  }
+  if (const auto& gloss = material.metallic_roughness) {
+    finish.metallic_roughness = CompileTexture(gloss->texture, compiled);
+    finish.metallic = static_cast<Real>(gloss->metallic);
+    finish.roughness = static_cast<Real>(gloss->roughness);
+  }
+  if (const auto& occlusion = material.occlusion) {
+    finish.occlusion = CompileTexture(occlusion->texture, compiled);
+    finish.occlusion_strength = static_cast<Real>(occlusion->strength);
+  }
+  if (const auto& normals = material.normal_map) {
+    finish.normals = CompileTexture(normals->texture, compiled);
+    finish.normal_scale = static_cast<Real>(normals->scale);
+  }
+  if (material.alpha.mode == AlphaMode::kOpaque) return;
+  finish.alpha = material.alpha.mode == AlphaMode::kMask ? AlphaUse::kMask : AlphaUse::kBlend;
+  finish.alpha_factor = static_cast<Real>(material.alpha.factor);
+  finish.alpha_cutoff = static_cast<Real>(material.alpha.cutoff);
+  // What is not there does not bend rays.
+  if (!AnyPositive(data.transmit)) data.ior = 1;
 }
 
 // The cosines of a spot light's two angles differ by at least this, as in KHR_lights_punctual.
@@ -200,9 +253,10 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   for (const Material& material : scene.materials) {
     MaterialData<Real> data = CompileMaterial<Real>(material, scene.settings);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
-      data.texture = static_cast<std::uint32_t>(compiled.textures.size());
-      CompileTexture(*texture, compiled);
+      data.texture = CompileTexture(*texture, compiled);
     }
+    CompileFinish(material, compiled, data);
+    data.needs = NeedsOf(data);
     compiled.materials.push_back(data);
   }
   for (const Object& object : scene.objects) {

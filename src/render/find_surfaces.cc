@@ -1,6 +1,7 @@
 #include "src/render/find_surfaces.h"
 
 #include "simd/shading.h"
+#include "src/render/finish_surfaces.h"
 #include "src/render/tint_surfaces.h"
 
 namespace sheaf {
@@ -21,6 +22,8 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
   }
   const auto view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
   if (material.needs & kNeedsTint) TintSurfaces(material, frame.textures, bin, view, output);
+  if (has_faces && material.finish.normals != kNoTexture) BumpSurfaces(frame, bin, view, output);
+  if (material.needs & kNeedsTerms) FinishSurfaces(frame, bin, view, output);
   return view;
 }
 

@@ -12,14 +12,20 @@ namespace sheaf {
 
 // The fields of surfaces that materials with `needs` read, as bits for Stream::Reserve.
 template <typename Real>
-constexpr std::uint32_t SurfaceFieldsFor(std::uint32_t needs) {
+constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
   using Fields = SurfaceView<Real>;
   const auto bits = [](auto... field) { return (FieldBit(field) | ...); };
-  const std::uint32_t coordinates = bits(&Fields::u, &Fields::v);
-  const std::uint32_t faces = bits(&Fields::face_x, &Fields::face_y, &Fields::face_z);
-  const std::uint32_t tints = bits(&Fields::tint_r, &Fields::tint_g, &Fields::tint_b);
-  return ~(coordinates | faces | tints) | (needs & kNeedsCoordinates ? coordinates : 0) |
-         (needs & kNeedsNormals ? faces : 0) | (needs & kNeedsTint ? tints : 0);
+  const std::uint64_t coordinates = bits(&Fields::u, &Fields::v);
+  const std::uint64_t faces = bits(&Fields::face_x, &Fields::face_y, &Fields::face_z);
+  const std::uint64_t tints = bits(&Fields::tint_r, &Fields::tint_g, &Fields::tint_b);
+  const std::uint64_t terms =
+      bits(&Fields::ambient_r, &Fields::ambient_g, &Fields::ambient_b, &Fields::emission_r,
+           &Fields::emission_g, &Fields::emission_b, &Fields::kd, &Fields::ks, &Fields::shininess,
+           &Fields::reflect_r, &Fields::reflect_g, &Fields::reflect_b, &Fields::transmit_r,
+           &Fields::transmit_g, &Fields::transmit_b);
+  return ~(coordinates | faces | tints | terms) | (needs & kNeedsCoordinates ? coordinates : 0) |
+         (needs & kNeedsNormals ? faces : 0) | (needs & kNeedsTint ? tints : 0) |
+         (needs & kNeedsTerms ? terms : 0);
 }
 
 // Writes the surfaces of the bin's hits to surfaces[0, bin.batch.count), as far as the bin's

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -45,7 +46,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   const ScenePlacement placement = PlaceScene(scene, camera);
   compiled = CompileScene<Real>(scene, placement);
   if (skips == Skips::kOff) {
-    for (MaterialData<Real>& material : compiled.materials) material.needs = kNeedsAll;
+    for (MaterialData<Real>& material : compiled.materials) material.needs |= kNeedsAll;
   }
   GeometryData<Real>& geometry = compiled.objects.data;
   if (const Status built = geometry.BuildTree(options.threads); !built.ok()) {
@@ -71,6 +72,10 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
                  options.height,
                  static_cast<Real>(options.contrast.value_or(std::nan(""))),
                  static_cast<Real>(options.min_throughput),
+                 std::any_of(compiled.materials.begin(), compiled.materials.end(),
+                             [](const MaterialData<Real>& material) {
+                               return material.finish.alpha != AlphaUse::kOpaque;
+                             }),
                  static_cast<Real>(1 / placement.scale)};
   if (skips == Skips::kOff) {
     frame->view.tree.skips_boxes = frame->view.tree.node_count == 0;

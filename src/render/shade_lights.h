@@ -10,6 +10,7 @@
 #include "simd/shading.h"
 #include "simd/streams.h"
 #include "src/core/aligned_array.h"
+#include "src/render/pass_light.h"
 #include "src/render/phase_clock.h"
 #include "src/stream/frame_view.h"
 #include "src/stream/stream.h"
@@ -22,20 +23,23 @@ class LightShader {
  public:
   LightShader(const FrameView<Real>& frame, const Kernels<Real>& kernels, RayCounts& rays,
               PhaseClock& clock)
-      : frame_(frame), kernels_(kernels), rays_(rays), clock_(clock) {}
+      : frame_(frame), kernels_(kernels), rays_(rays), clock_(clock), passer_(frame, kernels) {}
 
   // Adds to colours[0, count) what each light gives the surfaces that it reaches.
   void Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
              std::uint32_t count, const ColourOutput<Real>& colours);
   std::size_t bytes() const {
-    return lit_.bytes() + incidence_.bytes() + shadow_rays_.bytes() + surface_of_ray_.bytes() +
-           occluded_.bytes();
+    return passer_.bytes() + shares_.bytes() + ray_shares_.bytes() + lit_.bytes() +
+           incidence_.bytes() + shadow_rays_.bytes() + surface_of_ray_.bytes() + occluded_.bytes();
   }
 
  private:
   // Returns how many surfaces the light reaches.
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
+
+  // The same where surfaces are not all there, from what FindShadows left by ray.
+  std::uint32_t FindShares(const LightData<Real>& light, std::uint32_t rays, std::uint32_t count);
 
   const FrameView<Real>& frame_;
   const Kernels<Real>& kernels_;
@@ -46,6 +50,9 @@ class LightShader {
   IncidenceStream<Real> incidence_;  // of the light in work
   RayStream<Real> shadow_rays_;
   AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
+  LightPasser<Real> passer_;
+  // Where surfaces are not all there: the share of the light that arrives, by surface and by ray.
+  AlignedArray<Real> shares_, ray_shares_;
 };
 
 }  // namespace sheaf

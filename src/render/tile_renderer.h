@@ -56,7 +56,7 @@ class TileRenderer : public TileWorker {
   const FrameView<Real>& frame_;
   const Kernels<Real> kernels_;
   const std::atomic<bool>& stop_;
-  const std::uint32_t surface_fields_;  // that the frame's materials read
+  const std::uint64_t surface_fields_;  // that the frame's materials read
   HitBinner binner_;
   LightShader<Real> lights_;
 

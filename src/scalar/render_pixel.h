@@ -8,12 +8,15 @@
 #define SHEAF_SCALAR_RENDER_PIXEL_H_
 
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "sheaf/stats.h"
 #include "simd/query.h"
 #include "simd/shading.h"
 #include "src/scalar/camera_ray.h"
+#include "src/scalar/finish.h"
+#include "src/scalar/pass_light.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
 #include "src/scalar/trace_tree.h"
@@ -28,28 +31,39 @@ struct PixelScratch {
   std::vector<Path<Real>> paths, reflected, refracted;
 };
 
+// `here` is the material as it is at the surface, where its base colour is `base`.
 template <typename Real>
 Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
-                      const Surface<Real>& surface, RayCounts& tally) {
+                      const MaterialData<Real>& here, Vec3<Real> base, const Surface<Real>& surface,
+                      RayCounts& tally) {
   if (!HasLocalLight(material, surface)) return {0, 0, 0};
-  const Vec3<Real> base = BaseColourAt(material, frame.textures, surface);
-  Vec3<Real> colour = AmbientLight(material, base);
+  Vec3<Real> colour = AmbientLight(here, base);
   if (!ReactsToLight(material)) return colour;
   for (const LightData<Real>& light : frame.lights) {
     const Incidence<Real> incidence = IncidenceOf(light, surface);
     if (!incidence.reaches) continue;
+    Real share = 1;
     if (light.casts_shadows) {
       ++tally.shadow;
-      if (TraceOccluded(frame.tree, ShadowRay(light, surface, incidence))) continue;
+      share = LightShare(frame, ShadowRay(light, surface, incidence));
+      if (!(share > 0)) continue;
     }
-    colour = colour + LitBy(light, material, surface, base, incidence);
+    colour = colour + LitBy(light, here, surface, base, incidence) * share;
   }
   return colour;
 }
 
+// SurfaceOf, with the normal that shading goes by.
 template <typename Real>
-Surface<Real> SurfaceOf(const FrameView<Real>& frame, const Ray<Real>& ray, const Hit<Real>& hit) {
-  return SurfaceAt(ray, hit, frame.geometry, frame.primitives[hit.primitive].place);
+Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Real>& material,
+                            const Ray<Real>& ray, const Hit<Real>& hit) {
+  Surface<Real> surface = SurfaceOf(frame, ray, hit);
+  const PrimitiveInfo& primitive = frame.primitives[hit.primitive];
+  if (material.finish.normals != kNoTexture && primitive.kind() == PrimitiveKind::kTriangle) {
+    surface.normal = BumpedNormal(material, frame.textures, frame.geometry.triangles,
+                                  primitive.index(), surface);
+  }
+  return surface;
 }
 
 // Adds `colour`, seen with `throughput`, to `sum`.
@@ -79,17 +93,23 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       }
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];
-      const Surface<Real> surface = SurfaceOf(frame, path.ray, hit);
+      const Surface<Real> surface = ShadedSurface(frame, material, path.ray, hit);
+      const Vec3<Real> base = BaseColourAt(material, frame.textures, surface);
+      std::optional<MaterialData<Real>> varied;
+      if (material.needs & kNeedsTerms) {
+        varied = MaterialAt(material, frame.textures, surface, base);
+      }
+      const MaterialData<Real>& here = varied ? *varied : material;
       if (depth == 0 && first) {
         first->normal = surface.normal;
         first->surface = SurfaceIdOf(hit.primitive, frame.primitives[hit.primitive]);
         first->t = hit.t;
-        first->albedo = BaseColourAt(material, frame.textures, surface);
+        first->albedo = base;
         first->primitive = hit.primitive;
       }
-      Accumulate(sum, path.throughput, LocalLight(frame, material, surface, tally));
-      if (!SpawnsRays(material)) continue;
-      const Spawned<Real> spawned = Spawn(material, surface, path.throughput);
+      Accumulate(sum, path.throughput, LocalLight(frame, material, here, base, surface, tally));
+      if (!SpawnsRays(here)) continue;
+      const Spawned<Real> spawned = Spawn(here, surface, path.throughput);
       if (spawned.reflected.counts(frame.min_throughput))
         scratch.reflected.push_back(spawned.reflected);
       if (spawned.refracted.counts(frame.min_throughput))

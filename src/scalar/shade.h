@@ -22,7 +22,7 @@ bool HasLocalLight(const MaterialData<Real>& material, const Surface<Real>& surf
 
 template <typename Real>
 bool ReactsToLight(const MaterialData<Real>& material) {
-  return material.kd > 0 || material.ks > 0;
+  return material.kd > 0 || material.ks > 0 || material.finish.metallic_roughness != kNoTexture;
 }
 
 // A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.

@@ -87,7 +87,8 @@ void CheckTexture(const std::string& name, const Texture& texture, FirstFault& f
   fault.Components(name + ".factor", texture.factor, kAtLeastZero);
   fault.Components(name + ".transform.offset", texture.transform.offset, kAny);
   fault.Components(name + ".transform.scale", texture.transform.scale, kAny);
-  fault.Number(name + ".transform.rotation", texture.transform.rotation, kAny);
+  fault.Number(name + ".transform.rotation", texture.transform.rotation,
+               {-1e6, 1e6, "a number in [-1e6, 1e6]"});
   if (!texture.image) return fault.Fail(name + ".image is null");
   const Image& image = *texture.image;
   constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};

@@ -52,7 +52,8 @@ struct Image {
 // `offset` (KHR_texture_transform).
 struct TextureTransform {
   glm::dvec2 offset{0.0}, scale{1.0};  // finite
-  double rotation = 0.0;  // degrees, finite; (1, 0) turns to (cos, -sin), which is up on the image
+  double rotation =
+      0.0;  // degrees in [-1e6, 1e6]; (1, 0) turns to (cos, -sin), which is up on the image
 
   bool operator==(const TextureTransform&) const = default;
 };

@@ -35,6 +35,7 @@ struct FrameView {
   // everywhere.
   Real contrast;
   Real min_throughput;  // secondary rays of no more are not traced; 0: of none
+  bool has_alpha;       // whether any material is not all there
   Real length_unit;     // the user's lengths in one of the geometry's; a power of two
 
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }

@@ -13,8 +13,8 @@ namespace sheaf {
 
 // The bit of a field by its place in the list of its stream, for Stream::Reserve.
 template <typename Fields, typename Member>
-constexpr std::uint32_t FieldBit(Member Fields::*field) {
-  std::uint32_t bit = 1, found = 0;
+constexpr std::uint64_t FieldBit(Member Fields::*field) {
+  std::uint64_t bit = 1, found = 0;
   const auto compare = [&](auto member) {
     if constexpr (std::is_same_v<decltype(member), Member Fields::*>) {
       if (member == field) found = bit;
@@ -36,8 +36,8 @@ class Stream {
   }
   // The same, only where there is less room, and for those fields alone whose bits are set. What
   // was never made room for is a null pointer.
-  void Reserve(std::uint32_t n, std::uint32_t fields = ~0u) {
-    ForEachField(arrays_, [&, bit = 1u](auto& field) mutable {
+  void Reserve(std::uint32_t n, std::uint64_t fields = ~std::uint64_t{0}) {
+    ForEachField(arrays_, [&, bit = std::uint64_t{1}](auto& field) mutable {
       if (fields & bit) field.Reserve(StreamCapacity(n));
       bit <<= 1;
     });

@@ -1,0 +1,121 @@
+// What textures say of a surface point by point, besides its base colour.
+#ifndef SHEAF_SCALAR_FINISH_H_
+#define SHEAF_SCALAR_FINISH_H_
+
+#include <algorithm>
+#include <span>
+
+#include "simd/shading.h"
+#include "simd/tree.h"
+#include "src/scalar/sample_texture.h"
+#include "src/scalar/shade.h"
+#include "src/scalar/surface.h"
+#include "src/scalar/triangle.h"
+
+namespace sheaf::scalar {
+
+// How much of the surface is there, in [0, 1].
+template <typename Real>
+Real AlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+             const Surface<Real>& surface) {
+  const FinishData<Real>& finish = material.finish;
+  Real alpha = finish.alpha_factor;
+  if (material.kind == BaseColour::kTexture) {
+    alpha = alpha * SampleAlpha(textures[material.texture], surface.u, surface.v);
+  }
+  if (finish.alpha == AlphaUse::kMask) return alpha >= finish.alpha_cutoff ? Real(1) : Real(0);
+  return alpha;
+}
+
+// glTF's metal and roughness in Whitted's terms: docs/formats.md, "glTF".
+template <typename Real>
+void ApplyGloss(Real metallic, Real roughness, Vec3<Real> base, MaterialData<Real>& point) {
+  const Real smooth = 1 - roughness;
+  const Real mirror = metallic * (smooth * smooth);
+  point.kd = point.kd * (1 - metallic * smooth);
+  point.ks = (Real(0.2) + Real(0.6) * metallic) * smooth;
+  const Real squared = std::max(roughness * roughness, Real(0.01));
+  point.shininess = std::max(2 / (squared * squared) - 2, Real(1));
+  for (int i = 0; i < 3; ++i) {
+    point.ambient[i] = point.ambient[i] * (1 - mirror);
+    point.reflect[i] = mirror > Real(0.02) ? std::min(base[i], Real(1)) * mirror : Real(0);
+    point.transmit[i] = point.transmit[i] * (1 - metallic);
+  }
+}
+
+// The material as it is at one point, where its base colour is `base`. Only the terms that
+// SurfaceFields has differ.
+template <typename Real>
+MaterialData<Real> MaterialAt(const MaterialData<Real>& material,
+                              std::span<const TextureData<Real>> textures,
+                              const Surface<Real>& surface, Vec3<Real> base) {
+  const FinishData<Real>& finish = material.finish;
+  const auto sample = [&](std::uint32_t texture) {
+    return SampleTexture(textures[texture], surface.u, surface.v);
+  };
+  MaterialData<Real> point = material;
+  if (finish.metallic_roughness != kNoTexture) {
+    const Vec3<Real> gloss = sample(finish.metallic_roughness);
+    ApplyGloss(finish.metallic * gloss.z, finish.roughness * gloss.y, base, point);
+  }
+  if (finish.occlusion != kNoTexture) {
+    const Real share = 1 + finish.occlusion_strength * (sample(finish.occlusion).x - 1);
+    for (Real& channel : point.ambient) channel = channel * share;
+  }
+  if (finish.emission != kNoTexture) {
+    const Vec3<Real> emission = sample(finish.emission);
+    for (int i = 0; i < 3; ++i) point.emission[i] = point.emission[i] * emission[i];
+  }
+  if (finish.alpha != AlphaUse::kOpaque) {
+    const Real alpha = AlphaAt(material, textures, surface);
+    point.kd = point.kd * alpha;
+    point.ks = point.ks * alpha;
+    for (int i = 0; i < 3; ++i) {
+      point.ambient[i] = point.ambient[i] * alpha;
+      point.emission[i] = point.emission[i] * alpha;
+      point.reflect[i] = point.reflect[i] * alpha;
+      // What is not there lets all light pass.
+      point.transmit[i] = point.transmit[i] * alpha + (1 - alpha);
+    }
+  }
+  return point;
+}
+
+// The shading normal that a normal map makes of the surface's, on triangle `i`. Its tangents are
+// those of the triangle's surface coordinates, at right angles to the shading normal; a triangle
+// without coordinates, or whose normal would turn to the face's other side, keeps its normal.
+template <typename Real>
+Vec3<Real> BumpedNormal(const MaterialData<Real>& material,
+                        std::span<const TextureData<Real>> textures,
+                        const TriangleArrays<Real>& triangles, std::uint32_t i,
+                        const Surface<Real>& surface) {
+  using W = Wide<Real>;
+  if (!triangles.uv[0][0]) return surface.normal;
+  const auto vertex = [&](int k) { return VertexValue(triangles.vertex, k, i); };
+  const auto uv = [&](int k, int axis) { return static_cast<W>(triangles.uv[k][axis][i]); };
+  const Vec3<W> e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
+  const W du1 = uv(1, 0) - uv(0, 0), dv1 = uv(1, 1) - uv(0, 1);
+  const W du2 = uv(2, 0) - uv(0, 0), dv2 = uv(2, 1) - uv(0, 1);
+  const W det = du1 * dv2 - du2 * dv1;
+  if (!(det < 0 || det > 0)) return surface.normal;
+  const Vec3<W> shading = surface.normal.template To<W>();
+  const Vec3<W> n = surface.inside() ? -shading : shading;  // on the triangle's front
+  const Vec3<W> along_u = det > 0 ? e1 * dv2 - e2 * dv1 : e2 * dv1 - e1 * dv2;
+  const Vec3<W> level = along_u - n * Dot(along_u, n);
+  if (!(Dot(level, level) > 0)) return surface.normal;
+  const Vec3<W> x = NormalizeWide(level);
+  // Against v, which runs down the image: to the left of x where the image is seen as it is.
+  const Vec3<W> y = det < 0 ? Cross(n, x) : Cross(x, n);
+  const Vec3<W> texel =
+      SampleTexture(textures[material.finish.normals], surface.u, surface.v).template To<W>();
+  const W scale = static_cast<W>(material.finish.normal_scale);
+  const Vec3<W> bump =
+      (x * ((2 * texel.x - 1) * scale) + y * ((2 * texel.y - 1) * scale)) + n * (2 * texel.z - 1);
+  const Vec3<W> turned = surface.inside() ? -bump : bump;
+  if (!(Dot(turned, surface.face.template To<W>()) > 0)) return surface.normal;
+  return NormalizeWide(turned).template To<Real>();
+}
+
+}  // namespace sheaf::scalar
+
+#endif  // SHEAF_SCALAR_FINISH_H_

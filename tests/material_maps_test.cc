@@ -1,0 +1,305 @@
+// What varies from point to point on a surface: emission, metal, roughness, occlusion, normals,
+// alpha. Values by hand, and the same bits on every target.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model_files.h"
+#include "same_bits.h"
+#include "sheaf/render.h"
+#include "src/formats/png.h"
+#include "src/formats/write_scene_json.h"
+#include "test_frames.h"
+
+namespace sheaf {
+namespace {
+
+constexpr std::uint32_t Texel(std::uint32_t r, std::uint32_t g, std::uint32_t b,
+                              std::uint32_t a = 255) {
+  return r | g << 8 | b << 16 | a << 24;
+}
+
+// Of linear data, in one row, as texels and not as means of them.
+Texture RowOf(std::initializer_list<std::uint32_t> texels) {
+  const auto image =
+      std::make_shared<const Image>(Image{"row.png", static_cast<int>(texels.size()), 1, texels});
+  return {image, Transfer::kLinear, Wrap::kClamp, Wrap::kClamp, Filter::kNearest};
+}
+
+// A square from -1 to 1 at height z, its front up, u along x and v against y.
+Object Sheet(double z, std::uint32_t material, double half = 1) {
+  Mesh mesh;
+  const auto h = static_cast<float>(half), at = static_cast<float>(z);
+  mesh.positions = {{-h, -h, at}, {h, -h, at}, {h, h, at}, {-h, h, at}};
+  mesh.uv = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return {"", mesh, material};
+}
+
+// Looks down on the square, so that a picture of n x 1 pixels shows n texels of a row.
+Scene SheetScene(const Material& material) {
+  Scene scene;
+  scene.settings.ambient = Colour(1.0);
+  scene.settings.background = {0.25, 0.5, 0.75};
+  scene.materials = {material};
+  scene.objects = {Sheet(0, 0)};
+  scene.cameras = {{"down", {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, Orthographic{2}}};
+  return scene;
+}
+
+std::vector<glm::dvec3> RowIn(const Scene& scene, int width) {
+  RenderOptions options;
+  options.width = width;
+  options.height = 1;
+  Scene stretched = scene;
+  // Pixels are square: a row of n of them is as wide as the sheet.
+  std::get<Orthographic>(stretched.cameras[0].projection).height = 2.0 / width;
+  const Film film = RenderOrFail(stretched, stretched.cameras[0], options);
+  std::vector<glm::dvec3> row;
+  for (int x = 0; x < width; ++x) {
+    const float* rgb = film.pixel(x, 0);
+    row.emplace_back(rgb[0], rgb[1], rgb[2]);
+  }
+  return row;
+}
+
+void CheckColour(const glm::dvec3& got, const glm::dvec3& want) {
+  for (int i = 0; i < 3; ++i) CHECK(got[i] == doctest::Approx(want[i]).epsilon(2e-6));
+}
+
+TEST_CASE("emission is the factor times the texture, occlusion takes ambient light") {
+  Material material;
+  material.emission = {2, 1, 0.5};
+  material.emission_texture = RowOf({Texel(255, 0, 51), Texel(0, 102, 255)});
+  const auto glow = RowIn(SheetScene(material), 2);
+  CheckColour(glow[0], {2, 0, 0.1});
+  CheckColour(glow[1], {0, 0.4, 0.5});
+
+  Material shaded;
+  shaded.ambient = 0.5;
+  shaded.occlusion = {RowOf({Texel(255, 0, 0), Texel(0, 255, 255)}), 0.75};
+  const auto corners = RowIn(SheetScene(shaded), 2);
+  CheckColour(corners[0], glm::dvec3(0.5));
+  CheckColour(corners[1], glm::dvec3(0.125));
+}
+
+TEST_CASE("metal and roughness are Whitted's terms at each point") {
+  Material varied;
+  varied.base_colour = Colour(0.8, 0.4, 0.2);
+  varied.ambient = 0.25;
+  varied.kd = 1;
+  varied.metallic_roughness = {RowOf({Texel(0, 51, 255), Texel(0, 204, 0)}), 1, 1};
+  Scene scene = SheetScene(varied);
+  scene.lights = {{"", DirectionalLight{{0.3, 0.1, -1}}, Colour(1.0), 0.7}};
+  const auto got = RowIn(scene, 2);
+  // Smooth metal, then rough plastic, by the table in docs/formats.md.
+  const double metallic[] = {1, 0}, roughness[] = {0.2, 0.8};
+  for (int i = 0; i < 2; ++i) {
+    const double m = metallic[i], r = roughness[i], mirror = m * (1 - r) * (1 - r);
+    Material plain = varied;
+    plain.metallic_roughness.reset();
+    plain.ambient = 0.25 * (1 - mirror);
+    plain.kd = 1 - m * (1 - r);
+    plain.ks = (0.2 + 0.6 * m) * (1 - r);
+    plain.shininess = 2 / std::pow(r, 4) - 2;
+    if (mirror > 0.02) plain.reflect = Colour(0.8, 0.4, 0.2) * mirror;
+    Scene same = scene;
+    same.materials = {plain};
+    const auto want = RowIn(same, 2)[static_cast<std::size_t>(i)];
+    for (int c = 0; c < 3; ++c) {
+      CHECK(got[static_cast<std::size_t>(i)][c] == doctest::Approx(want[c]).epsilon(1e-4));
+    }
+  }
+}
+
+// n . l of a normal that a texel (r, g, b) gives on the sheet.
+double Lambert(const glm::dvec3& texel, const glm::dvec3& to_light) {
+  const glm::dvec3 n = 2.0 * (texel / 255.0) - 1.0;
+  const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  };
+  return dot(n, to_light) / std::sqrt(dot(n, n) * dot(to_light, to_light));
+}
+
+TEST_CASE("normal maps lean to u and against v, on both sides and in mirrored coordinates") {
+  Material bumpy;
+  bumpy.kd = 1;
+  bumpy.normal_map = {RowOf({Texel(200, 100, 220), Texel(60, 180, 200)}), 1};
+  Scene scene = SheetScene(bumpy);
+  const glm::dvec3 to_light(0.4, -0.3, 1);
+  scene.lights = {{"", DirectionalLight{-to_light}, Colour(1.0), 1.0}};
+  auto row = RowIn(scene, 2);
+  CHECK(row[0].x == doctest::Approx(Lambert({200, 100, 220}, to_light)).epsilon(1e-5));
+  CHECK(row[1].x == doctest::Approx(Lambert({60, 180, 200}, to_light)).epsilon(1e-5));
+
+  SUBCASE("u runs the other way") {
+    auto& mesh = std::get<Mesh>(scene.objects[0].shape);
+    for (glm::vec2& uv : mesh.uv) uv.x = 1 - uv.x;
+    row = RowIn(scene, 2);
+    // The second texel is on the left, and its x leans to the left.
+    const glm::dvec3 mirrored(-0.4, -0.3, 1);
+    CHECK(row[0].x == doctest::Approx(Lambert({60, 180, 200}, mirrored)).epsilon(1e-5));
+  }
+  SUBCASE("seen from behind") {
+    auto& mesh = std::get<Mesh>(scene.objects[0].shape);
+    for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
+    row = RowIn(scene, 2);
+    // The front looks down: x and y stay along u and against v, and the normal is turned to the
+    // eye.
+    const glm::dvec3 below(-0.4, 0.3, 1);
+    CHECK(row[0].x == doctest::Approx(Lambert({200, 100, 220}, below)).epsilon(1e-5));
+  }
+  SUBCASE("no coordinates that differ, no lean") {
+    auto& mesh = std::get<Mesh>(scene.objects[0].shape);
+    for (glm::vec2& uv : mesh.uv) uv = {0, 0};
+    row = RowIn(scene, 2);
+    CHECK(row[0].x == doctest::Approx(Lambert({127.5, 127.5, 255}, to_light)).epsilon(1e-5));
+  }
+}
+
+Material Veil(AlphaMode mode, double factor) {
+  Material veil;
+  veil.base_colour = RowOf({Texel(255, 255, 255, 0), Texel(255, 255, 255, 127),
+                            Texel(255, 255, 255, 128), Texel(255, 255, 255, 255)});
+  veil.ambient = 1;
+  veil.alpha = {mode, factor, 0.5};
+  return veil;
+}
+
+TEST_CASE("what alpha leaves out shows what lies behind") {
+  const glm::dvec3 sky(0.25, 0.5, 0.75), white(1.0);
+  const auto opaque = RowIn(SheetScene(Veil(AlphaMode::kOpaque, 1)), 4);
+  for (const glm::dvec3& colour : opaque) CheckColour(colour, white);
+  const auto mask = RowIn(SheetScene(Veil(AlphaMode::kMask, 1)), 4);
+  CheckColour(mask[0], sky);
+  CheckColour(mask[1], sky);
+  CheckColour(mask[2], white);
+  CheckColour(mask[3], white);
+  const auto blend = RowIn(SheetScene(Veil(AlphaMode::kBlend, 0.5)), 4);
+  const double alphas[] = {0, 127 / 510.0, 128 / 510.0, 0.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    CheckColour(blend[i], white * alphas[i] + sky * (1 - alphas[i]));
+  }
+}
+
+TEST_CASE("shadows follow alpha, through several sheets") {
+  Scene scene = SheetScene(Veil(AlphaMode::kBlend, 1));
+  Material floor;
+  floor.kd = 1;
+  scene.materials.push_back(floor);
+  // The eye stands between the floor and the veils.
+  scene.objects = {Sheet(3, 0), Sheet(2, 0), Sheet(0, 1)};
+  scene.cameras[0].eye = {0, 0, 1};
+  const double left[] = {1, 128 / 255.0, 127 / 255.0, 0};
+  const Light lights[] = {{"sun", DirectionalLight{{0, 0, -1}}, Colour(1.0), 1.0},
+                          {"lamp", PointLight{{0, 0, 1e5}, {1, 0, 0}}, Colour(1.0), 1.0}};
+  for (const Light& light : lights) {
+    CAPTURE(light.name);
+    scene.lights = {light};
+    scene.materials[0].alpha.mode = AlphaMode::kBlend;
+    const auto blend = RowIn(scene, 4);
+    for (std::size_t i = 0; i < 4; ++i) CheckColour(blend[i], glm::dvec3(left[i] * left[i]));
+    scene.materials[0].alpha.mode = AlphaMode::kMask;
+    const auto mask = RowIn(scene, 4);
+    for (std::size_t i = 0; i < 4; ++i) CheckColour(mask[i], glm::dvec3(i < 2 ? 1 : 0));
+  }
+}
+
+TEST_CASE("coordinates are scaled, turned and moved") {
+  Material material;
+  material.emission = Colour(1.0);
+  material.emission_texture =
+      RowOf({Texel(0, 0, 0), Texel(85, 0, 0), Texel(170, 0, 0), Texel(255, 0, 0)});
+  material.emission_texture->transform = {{0.5, 0}, {0.5, 1}, 0};
+  auto row = RowIn(SheetScene(material), 4);
+  const double moved[] = {170, 170, 255, 255};
+  for (std::size_t i = 0; i < 4; ++i) CheckColour(row[i], {moved[i] / 255, 0, 0});
+  // Half a turn about the origin, then moved back.
+  material.emission_texture->transform = {{1, 1}, {1, 1}, 180};
+  row = RowIn(SheetScene(material), 4);
+  const double turned[] = {255, 170, 85, 0};
+  for (std::size_t i = 0; i < 4; ++i) CheckColour(row[i], {turned[i] / 255, 0, 0});
+}
+
+Texture RandomTexture(Random& random) {
+  auto image = std::make_shared<Image>(Image{"", 4, 3, {}});
+  for (int i = 0; i < 12; ++i) image->texels.push_back(static_cast<std::uint32_t>(random()));
+  Texture texture{image, random() % 2 ? Transfer::kLinear : Transfer::kSrgb, Wrap::kMirror,
+                  Wrap::kRepeat, random() % 2 ? Filter::kLinear : Filter::kNearest};
+  if (random() % 2) {
+    texture.transform = {{Uniform(random, -1, 1), 0.25}, {2, -1.5}, Uniform(random, -180, 180)};
+  }
+  return texture;
+}
+
+TEST_CASE("materials that vary have the same bits on every target") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    Scene scene = EverythingScene(seed);
+    Random random(seed);
+    for (Material& material : scene.materials) {
+      if (random() % 2) material.base_colour = RandomTexture(random);
+      if (random() % 2) {
+        material.emission = Colour(0.1, 0.2, 0.3);
+        material.emission_texture = RandomTexture(random);
+      }
+      if (random() % 2) material.metallic_roughness = {RandomTexture(random), 0.9, 0.8};
+      if (random() % 2) material.occlusion = {RandomTexture(random), 0.7};
+      if (random() % 2) material.normal_map = {RandomTexture(random), 0.6};
+      const AlphaMode modes[] = {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend};
+      material.alpha = {modes[random() % 3], Uniform(random, 0.3, 1), 0.4};
+    }
+    RenderOptions options;
+    options.width = 61;
+    options.height = 47;
+    for (const Precision precision : {Precision::kStrict, Precision::kDouble}) {
+      options.precision = precision;
+      CheckSameBits(scene, scene.cameras[0], options);
+    }
+  }
+}
+
+TEST_CASE("maps of materials are written and read back") {
+  const Folder folder;
+  REQUIRE(WritePng({1, 1, {10, 20, 30}}, Transfer::kLinear, folder / "t.png").ok());
+  const std::string text = R"({"materials": [{"name": "a", "emission": 2,
+    "emission_texture": {"image": "t.png", "transform": {"offset": [0.25, 0], "rotation": 30}},
+    "metallic_roughness": {"texture": {"image": "t.png"}, "metallic": 0.25, "roughness": 0.5},
+    "occlusion": {"texture": {"image": "t.png"}, "strength": 0.75},
+    "normal_map": {"texture": {"image": "t.png"}, "scale": -2},
+    "alpha": {"mode": "mask", "factor": 0.5, "cutoff": 0.125}}],
+    "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0]}]})";
+  const Scene first = ReadOrFail(folder.Write("a.json", text));
+  const Scene again = ReadOrFail(folder.Write("b.json", SceneJsonText(first)));
+  for (const Scene* scene : {&first, &again}) {
+    const Material& material = scene->materials[0];
+    REQUIRE(material.emission_texture.has_value());
+    CHECK(material.emission_texture->transfer == Transfer::kSrgb);
+    CHECK(material.emission_texture->transform == TextureTransform{{0.25, 0}, {1, 1}, 30});
+    REQUIRE(material.metallic_roughness.has_value());
+    CHECK(material.metallic_roughness->texture.transfer == Transfer::kLinear);
+    CHECK(material.metallic_roughness->metallic == 0.25);
+    CHECK(material.metallic_roughness->roughness == 0.5);
+    REQUIRE(material.occlusion.has_value());
+    CHECK(material.occlusion->strength == 0.75);
+    REQUIRE(material.normal_map.has_value());
+    CHECK(material.normal_map->scale == -2);
+    CHECK(material.alpha.mode == AlphaMode::kMask);
+    CHECK(material.alpha.factor == 0.5);
+    CHECK(material.alpha.cutoff == 0.125);
+  }
+  CheckRefused(folder.Write("c.json", R"({"materials": [{"name": "a",
+    "alpha": {"mode": "cutout"}}], "cameras": []})"),
+               "/materials/0/alpha/mode");
+  CheckRefused(folder.Write("d.json", R"({"materials": [{"name": "a",
+    "occlusion": {"strength": 2}}], "cameras": []})"),
+               "/materials/0/occlusion");
+}
+
+}  // namespace
+}  // namespace sheaf
