@@ -84,7 +84,7 @@ struct SurfaceFields {
   Field<Real> face_x, face_y, face_z;  // the face's own normal: unit, facing the ray; these fields
                                        // may be the normal's where the two are one
   Field<Real> direction_x, direction_y, direction_z;  // of the ray, unit
-  Field<Real> u, v;                                   // surface coordinates, 0 on spheres
+  Field<Real> u, v;                    // surface coordinates; the kernel leaves 0 on spheres
   Field<Real> tint_r, tint_g, tint_b;  // what the base colour is multiplied with, point by point
   Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
   Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side

@@ -210,6 +210,36 @@ TEST_CASE("shadows follow alpha, through several sheets") {
   }
 }
 
+TEST_CASE("spheres have longitude and latitude") {
+  // Eight columns around, seen from +z by a camera of which each pixel meets the middle of one.
+  Material globe;
+  globe.emission = Colour(1.0);
+  globe.emission_texture =
+      RowOf({0, Texel(32, 0, 0), Texel(64, 0, 0), Texel(96, 0, 0), Texel(128, 0, 0),
+             Texel(160, 0, 0), Texel(192, 0, 0), Texel(224, 0, 0)});
+  Scene scene = SheetScene(globe);
+  scene.objects = {{"", Sphere{{0, 0, 0}, 1}, 0}};
+  const auto seen = [&](const Vec3d& eye) {
+    scene.cameras[0] = {"in", eye, {0, 0, 0}, {0, 1, 0.001}, Orthographic{1e-3}};
+    RenderOptions options;
+    options.width = 1, options.height = 1;
+    return RenderOrFail(scene, scene.cameras[0], options).rgb[0] * 255 / 32;
+  };
+  for (int column = 0; column < 8; ++column) {
+    const double angle = ((column + 0.5) / 8 - 0.5) * 2 * std::acos(-1.0);
+    CHECK(seen({3 * std::sin(angle), 0.3, 3 * std::cos(angle)}) == doctest::Approx(column));
+    CHECK(seen({0.3 * std::sin(angle), 0.03, 0.3 * std::cos(angle)}) ==
+          doctest::Approx((column + 4) % 8));
+  }
+  const auto image = std::make_shared<const Image>(
+      Image{"", 1, 4, {0, Texel(32, 0, 0), Texel(64, 0, 0), Texel(96, 0, 0)}});
+  scene.materials[0].emission_texture->image = image;
+  CHECK(seen({0, 3, 0.1}) == doctest::Approx(0));
+  CHECK(seen({0, 1, 3}) == doctest::Approx(1));
+  CHECK(seen({1, -1, 3}) == doctest::Approx(2));
+  CHECK(seen({0, -3, 0.1}) == doctest::Approx(3));
+}
+
 TEST_CASE("coordinates are scaled, turned and moved") {
   Material material;
   material.emission = Colour(1.0);

@@ -136,7 +136,7 @@ TEST_CASE("rays that a triangle spawns start on their side; a coplanar neighbour
     const Ray<float> ray = RayAt(random, at, false);
     const auto hit = scalar::TraceClosest(frame.geometry, ray);
     if (hit.primitive == kNoPrimitive) continue;
-    const Surface<float> surface = scalar::SurfaceOf(frame, ray, hit);
+    const Surface<float> surface = scalar::SurfaceOf(frame, MaterialData<float>{}, ray, hit);
     const Vec3<float> away = surface.normal * surface.offset;
     const Exact sign = surface.inside() ? -1 : 1;
     const TriangleArrays<float>& triangles = frame.geometry.triangles;
@@ -172,7 +172,7 @@ TEST_CASE("shadow rays do not meet the quad they are for, grazing light included
     const Ray<float> ray = RayAt(random, at, false);
     const auto hit = scalar::TraceClosest(frame.geometry, ray);
     if (hit.primitive == kNoPrimitive) continue;
-    const Surface<float> surface = scalar::SurfaceOf(frame, ray, hit);
+    const Surface<float> surface = scalar::SurfaceOf(frame, MaterialData<float>{}, ray, hit);
     if (surface.offset > 1e-3 * at.size) continue;
     const Vec3<float> towards = AwayFrom(random, surface.normal, i);
     LightData<float> light = PointLightAt({0, 0, 0}, 1, 0, 0);

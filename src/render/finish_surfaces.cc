@@ -2,6 +2,7 @@
 
 #include "simd/shading.h"
 #include "src/scalar/finish.h"
+#include "src/scalar/sphere_coordinates.h"
 
 namespace sheaf {
 namespace {
@@ -23,6 +24,19 @@ scalar::Surface<Real> SurfaceIn(const SurfaceView<Real>& surfaces, std::uint32_t
 }
 
 }  // namespace
+
+template <typename Real>
+void PlaceOnSpheres(const HitBin& bin, const SurfaceView<Real>& surfaces,
+                    const SurfaceOutput<Real>& placed) {
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
+    scalar::Surface<Real> surface{};
+    surface.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
+    surface.source = surfaces.source[i];
+    scalar::PlaceOnSphere(surface);
+    placed.u[i] = surface.u;
+    placed.v[i] = surface.v;
+  }
+}
 
 template <typename Real>
 void BumpSurfaces(const FrameView<Real>& frame, const HitBin& bin,
@@ -65,6 +79,8 @@ void FinishSurfaces(const FrameView<Real>& frame, const HitBin& bin,
 }
 
 #define SHEAF_INSTANTIATE(Real)                                                                 \
+  template void PlaceOnSpheres(const HitBin&, const SurfaceView<Real>&,                         \
+                               const SurfaceOutput<Real>&);                                     \
   template void BumpSurfaces(const FrameView<Real>&, const HitBin&, const SurfaceView<Real>&,   \
                              const SurfaceOutput<Real>&);                                       \
   template void FinishSurfaces(const FrameView<Real>&, const HitBin&, const SurfaceView<Real>&, \

@@ -10,6 +10,11 @@ namespace sheaf {
 
 // One surface at a time, as texels are looked up (TintSurfaces), whose tints are there already.
 
+// Sets u and v of surfaces[0, bin.batch.count), on spheres. Bits: as sheaf::scalar::PlaceOnSphere.
+template <typename Real>
+void PlaceOnSpheres(const HitBin& bin, const SurfaceView<Real>& surfaces,
+                    const SurfaceOutput<Real>& placed);
+
 // Turns the shading normals of surfaces[0, bin.batch.count), triangles whose material has a normal
 // map. Bits: as sheaf::scalar::BumpedNormal.
 template <typename Real>

@@ -5,6 +5,7 @@
 #include "simd/query.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/ray.h"
+#include "src/scalar/sphere_coordinates.h"
 #include "src/scalar/trace_tree.h"
 #include "src/stream/frame_view.h"
 
@@ -14,8 +15,13 @@ namespace sheaf::scalar {
 inline constexpr int kMostPasses = 256;
 
 template <typename Real>
-Surface<Real> SurfaceOf(const FrameView<Real>& frame, const Ray<Real>& ray, const Hit<Real>& hit) {
-  return SurfaceAt(ray, hit, frame.geometry, frame.primitives[hit.primitive].place);
+Surface<Real> SurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& material,
+                        const Ray<Real>& ray, const Hit<Real>& hit) {
+  const PrimitiveInfo& primitive = frame.primitives[hit.primitive];
+  Surface<Real> surface = SurfaceAt(ray, hit, frame.geometry, primitive.place);
+  const bool has_coordinates = (material.needs & kNeedsCoordinates) != 0;
+  if (has_coordinates && primitive.kind() == PrimitiveKind::kSphere) PlaceOnSphere(surface);
+  return surface;
 }
 
 // Takes a shadow ray past what it hit: it starts anew beyond, with the same end, and `share` is
@@ -24,7 +30,7 @@ template <typename Real>
 bool PassSurface(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ray, Real& share) {
   const MaterialData<Real>& material = frame.materials[frame.primitives[hit.primitive].material];
   if (material.finish.alpha == AlphaUse::kOpaque) return false;
-  const Surface<Real> surface = SurfaceOf(frame, ray, hit);
+  const Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
   share = share * (1 - AlphaAt(material, frame.textures, surface));
   if (!(share > 0)) return false;
   const Vec3<Real> start = surface.position - surface.face * surface.offset;

@@ -57,7 +57,7 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& ma
 template <typename Real>
 Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Real>& material,
                             const Ray<Real>& ray, const Hit<Real>& hit) {
-  Surface<Real> surface = SurfaceOf(frame, ray, hit);
+  Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
   const PrimitiveInfo& primitive = frame.primitives[hit.primitive];
   if (material.finish.normals != kNoTexture && primitive.kind() == PrimitiveKind::kTriangle) {
     surface.normal = BumpedNormal(material, frame.textures, frame.geometry.triangles,
