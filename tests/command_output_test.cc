@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -195,6 +196,75 @@ TEST_CASE("a reader that goes away is code 4, not a signal") {
   close(reader);  // the command has the pipe open, and writes to it once the picture is done
   CHECK(process.WaitForExit() == 4);
   CHECK(Contains(process.err(), "standard output"));
+}
+
+// The bytes that a run without any fault may send to a terminal: text, and ends of lines.
+bool IsPlain(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == '\x7f';
+  });
+}
+
+TEST_CASE("control characters in names never reach the terminal") {
+  const Workspace work;
+  const std::string evil = "e\x1b[31m\x07";
+  WriteText(work / (evil + ".obj"), "mtllib gone\x1b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  WriteText(work / (evil + ".json"), "{\"\x1b[2J\"}");
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"render", work / (evil + ".obj"), "--size", "8x8", "-o", work / (evil + ".png")},
+           {"render", work / (evil + ".obj"), "-o", work / (evil + "/a.png")},
+           {"render", work / (evil + ".obj"), "-o", work / evil},
+           {"render", kScene, "-o", work / "a.png", "--camera", evil},
+           {"render", kScene, "-o", work / "a.png", "--" + evil},
+           {"render", kScene, "-o", work / "a.png", "--progress", evil},
+           {"convert", work / evil, "-o", work / "a.png"},
+           {"check", work / (evil + ".obj"), work / (evil + ".json")},
+           {"check", work / (evil + ".obj"), "--json"},
+           {"info", work / (evil + ".obj")}}) {
+    const Outcome outcome = work.Run(arguments);
+    CAPTURE(arguments[0]);
+    CHECK(IsPlain(outcome.out));
+    CHECK(IsPlain(outcome.err));
+    CHECK(Contains(outcome.out + outcome.err, "\\u001B[31m"));
+  }
+}
+
+TEST_CASE("a picture goes to standard output, in the format that --format says") {
+  const Workspace work;
+  for (const std::string format : {"png", "pfm"}) {
+    const std::string path = work / ("a." + format);
+    REQUIRE(work.Render({"-q", "-o", path}).code == 0);
+    for (const std::string output : {"-", "/dev/stdout"}) {
+      const Outcome piped = work.Render({"-q", "-o", output, "--format", format});
+      CHECK(piped.code == 0);
+      CHECK(piped.err.empty());
+      CHECK(piped.out == ReadText(path));
+    }
+    CHECK(work.Render({"-q", "-o", work / "plain", "--format", format}).code == 0);
+    CHECK(ReadText(work / "plain") == ReadText(path));
+  }
+}
+
+TEST_CASE("-q shows errors alone, of a model with a warning too") {
+  const Workspace work;
+  const std::string model = work / "a.obj";
+  WriteText(model, "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK(Contains(work.Run({"render", model, "-o", work / "a.png"}).err, "sheaf: warning: "));
+  CHECK(work.Run({"render", model, "-o", work / "a.png", "-q"}).err.empty());
+}
+
+TEST_CASE("a model is the same by its bare name and by a path") {
+  const Workspace work;
+  WriteText(work / "a.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string here = fs::current_path().string();
+  fs::current_path(fs::path(work / "a.obj").parent_path());
+  const Outcome bare = work.Run({"render", "a.obj", "-o", work / "bare.png"});
+  const Outcome dotted = work.Run({"render", "./a.obj", "-o", work / "dotted.png"});
+  fs::current_path(here);
+  CHECK(bare.code == 0);
+  CHECK(Contains(bare.err, "warning: a.obj: mtllib: gone.mtl: cannot open"));
+  CHECK(dotted.code == 0);
+  CHECK(!ReadText(work / "bare.png").empty());
 }
 
 }  // namespace

@@ -35,9 +35,9 @@ TEST_CASE("help and version go to stdout") {
     CHECK(Contains(help.out, "Exit codes:"));
   }
   const Outcome options = work.Run({"render", "--help"});
-  for (const char* option :
-       {"--camera", "--views", "-o", "--size", "--spp", "--max-depth", "--target", "--precision",
-        "--threads", "--tile", "--crop", "--aov", "--progress", "-q", "--json"}) {
+  for (const char* option : {"--camera", "--views", "-o", "--size", "--spp", "--max-depth",
+                             "--target", "--precision", "--threads", "--tile", "--tile-size",
+                             "--format", "--crop", "--aov", "--progress", "-q", "--json"}) {
     CHECK_MESSAGE(Contains(options.out, option), std::string(option));
   }
   const Outcome version = work.Run({"--version"});
@@ -97,7 +97,19 @@ TEST_CASE("usage errors of render") {
       {{"render", kScene, "-o", png, "--spp", "99999999999"}, "--spp"},
       {{"render", kScene, "-o", png, "--max-depth", "-1"}, "--max-depth"},
       {{"render", kScene, "-o", png, "--threads", "-1"}, "--threads"},
-      {{"render", kScene, "-o", png, "--tile", "257"}, "--tile"},
+      {{"render", kScene, "-o", png, "--tile-size", "257"}, "--tile-size"},
+      {{"render", kScene, "-o", png, "--tile", "32"}, "not a part like 2/8 (--tile-size is"},
+      {{"render", kScene, "-o"}, "-o: no value follows (see"},
+      {{"render", kScene, "-o", "--spp", "3"}, "-o: no value follows, but the option --spp"},
+      {{"render", kScene, "--spp", "-o", png}, "--spp: no value follows, but the option -o"},
+      {{"render", kScene, "-o", png, "--size"}, "--size: no value follows (see"},
+      {{"render", kScene, "-o", "-"}, "-o /dev/stdout: needs --format"},
+      {{"render", kScene, "-o", "-", "--format", "jpg"}, "--format"},
+      {{"render", kScene, "-o", "-", "--format", "png", "--json"}, "both to standard output"},
+      {{"render", kScene, "-o", work / "a", "--format", "png", "--aov", "depth"},
+       "no layers in it"},
+      {{"render", kScene, "-o", work / "a", "--format", "png", "--bits", "32"},
+       "32 bits a channel"},
       {{"render", kScene, "-o", png, "--crop", "0,0,10"}, "--crop"},
       {{"render", kScene, "-o", png, "--crop", "-1,0,10,10"}, "--crop"},
       {{"render", kScene, "-o", png, "--crop", "5,5,5,9"}, "--crop"},
@@ -161,6 +173,32 @@ TEST_CASE("an unknown target lists every usable one") {
   CHECK(outcome.code == 2);
   for (const std::string name : targets["usable"]) CHECK(Contains(outcome.err, name));
   CHECK(Contains(outcome.err, "auto, scalar"));
+}
+
+TEST_CASE("what others call a target leads to its name here") {
+  const Workspace work;
+  const json targets = json::parse(work.Run({"info", "--json"}).out)["targets"];
+  const std::vector<std::string> compiled = targets["compiled"];
+  if (std::find(compiled.begin(), compiled.end(), "avx3") == compiled.end()) {
+    MESSAGE("skipped: no target of this build has AVX-512");
+    return;
+  }
+  const std::string says = "unknown target \"avx512\"; AVX-512 is called \"avx3\" here";
+  CHECK(Contains(work.Render({"-o", work / "a.png", "--target", "avx512"}).err, says));
+  CHECK(Contains(work.Run({"bench", kScene, "--targets", "scalar,avx512"}).err, says));
+}
+
+TEST_CASE("a file of another kind is named as such, with the endings of scenes") {
+  const Workspace work;
+  WriteText(work / "a.stl", "solid\n");
+  const Outcome unknown = work.Run({"check", work / "a.stl"});
+  CHECK(unknown.code == 3);
+  CHECK(Contains(unknown.err, "a.stl: of no known format; a scene's name ends in .json, .nff, "));
+  CHECK(work.Render({"-q", "-o", work / "a.png"}).code == 0);
+  CHECK(Contains(work.Run({"info", work / "a.png"}).err, "a.png: a picture; a scene's name ends"));
+  // Scene JSON may have any name.
+  WriteText(work / "scene", "\xEF\xBB\xBF // A scene\n" + ReadText(kScene));
+  CHECK(work.Run({"check", work / "scene"}).code == 0);
 }
 
 TEST_CASE("a bad scene: its own line, code 3") {

@@ -163,7 +163,7 @@ TEST_CASE("layers lie beside a picture, or in it") {
 TEST_CASE("--aov heat shows rays and lanes of each tile") {
   const Workspace work;
   const std::string pfm = work / "a.pfm";
-  const std::vector<std::string> render = {"render", kScene,  "--size", "50x40", "--tile",
+  const std::vector<std::string> render = {"render", kScene,  "--size", "50x40", "--tile-size",
                                            "16",     "--aov", "heat",   "-q"};
   auto arguments = render;
   arguments.insert(arguments.end(), {"--crop", "7,3,50,40", "-o", pfm, "--json"});

@@ -86,6 +86,16 @@ void AddSize(CLI::App& app, std::optional<PixelSize>& size) {
             "Pixels of the whole picture", &ParseSize);
 }
 
+void AddPictureFormat(CLI::App& app, std::string& format) {
+  std::vector<std::string> names;
+  for (const FileFormat& known : FileFormats()) {
+    if (known.content != FileContent::kPicture) continue;
+    for (const std::string& ending : known.endings) names.push_back(ending.substr(1));
+  }
+  AddChoice(app, "--format", format, names,
+            "The picture's format, where its path does not end in it");
+}
+
 void AddBits(CLI::App& app, std::optional<int>& bits) {
   AddInteger(app, "--bits", bits, 8, 32, ("Of a channel: " + BitsText()).c_str());
 }

@@ -71,6 +71,9 @@ void AddShare(CLI::App& app, const char* name, std::optional<double>& value,
 // --size, of the whole picture.
 void AddSize(CLI::App& app, std::optional<PixelSize>& size);
 
+// --format, an ending without its dot, which stands for the one that a pipe's name lacks.
+void AddPictureFormat(CLI::App& app, std::string& format);
+
 // --bits, of a picture's channel.
 void AddBits(CLI::App& app, std::optional<int>& bits);
 

@@ -36,14 +36,37 @@ Error UnknownName(std::string_view option, std::string_view kind, const std::str
                            choices.empty() ? "none" : Printable(list)));
 }
 
+// Names that others give to what has another one here.
+struct OtherName {
+  std::string_view name, target, meaning;
+};
+constexpr OtherName kOtherNames[] = {
+    {"avx512", "avx3", "AVX-512"},   {"avx-512", "avx3", "AVX-512"}, {"avx512f", "avx3", "AVX-512"},
+    {"avx512bw", "avx3", "AVX-512"}, {"skx", "avx3", "AVX-512"},     {"sse4.1", "sse4", "SSE4.1"},
+    {"sse4.2", "sse4", "SSE4.1"},    {"sse41", "sse4", "SSE4.1"},    {"sse42", "sse4", "SSE4.1"},
+};
+
 // Why `target` does not run, with `choices` of the option before the usable ones.
 Error UnusableTarget(std::string_view option, const std::string& target,
                      std::vector<std::string> choices) {
   for (std::string& usable : UsableTargets()) choices.push_back(std::move(usable));
+  const auto has = [](const std::vector<std::string>& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   const std::vector<std::string> compiled = CompiledTargets();
-  if (std::find(compiled.begin(), compiled.end(), target) != compiled.end()) {
+  if (has(compiled, target)) {
     return Usage(fmt::format("{}: this processor does not run \"{}\" (usable: {})", option, target,
                              fmt::join(choices, ", ")));
+  }
+  std::string lower = target;
+  for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  for (const OtherName& other : kOtherNames) {
+    if (lower != other.name || !has(compiled, other.target)) continue;
+    return Usage(
+        fmt::format("{}: unknown target \"{}\"; {} is called \"{}\" here{} (usable: {})", option,
+                    Printable(target), other.meaning, other.target,
+                    has(choices, other.target) ? "" : ", and this processor does not run it",
+                    fmt::join(choices, ", ")));
   }
   return UnknownName(option, "target", target, "usable", choices);
 }
@@ -158,6 +181,10 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
                              Printable(first.name)));
   }
   return cameras;
+}
+
+std::string FormatPath(const std::string& path, const std::string& format) {
+  return format.empty() ? path : "." + format;
 }
 
 Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {

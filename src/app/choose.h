@@ -53,6 +53,12 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
                                                  const SceneOptions& options,
                                                  const std::string& path, const Scene& scene);
 
+// What tells the format of an output: its path, or what --format says in its stead.
+std::string FormatPath(const std::string& path, const std::string& format);
+
+// The path that `-o -` stands for.
+inline constexpr std::string_view kStandardOutputPath = "/dev/stdout";
+
 // Where this stands in an output's path, the camera's name goes.
 inline constexpr std::string_view kCameraField = "{camera}";
 

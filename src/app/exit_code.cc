@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <cstdio>
 
 #include "src/app/interrupt.h"
+#include "src/app/print_message.h"
 
 namespace sheaf {
 
@@ -25,8 +25,7 @@ ExitCode ExitCodeOf(ErrorKind kind) {
 
 ExitCode Report(const Error& error) {
   const char* prefix = error.kind == ErrorKind::kScene ? "" : "sheaf: ";
-  const std::string line = fmt::format("{}{}\n", prefix, error.message);
-  std::fputs(line.c_str(), stderr);
+  PrintMessage(fmt::format("{}{}", prefix, error.message));
   return ExitCodeOf(error.kind);
 }
 

@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "src/app/choose.h"
 #include "src/scene/projection.h"
 
 namespace sheaf {
@@ -39,14 +40,15 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
   spec.metadata = {{"Scene", scene_path},
                    {"Camera", frame.camera->name},
                    {"Settings", SettingsText(options, *frame.camera)}};
-  if (HoldsLayers(frame.path)) spec.layers = options.layers;
+  spec.format = frame.format;
+  if (HoldsLayers(FormatPath(frame.path, frame.format))) spec.layers = options.layers;
   Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
   if (!picture) return picture.error();
   FrameWriter writer(std::move(picture).value());
   for (const auto& [layer, path] : frame.beside) {
     if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
     if (layer == Layer::kHeat) continue;  // known when all tiles are
-    PictureSpec beside = spec;
+    PictureSpec beside = spec;            // no format: such files go by their endings
     beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
     if (layer != Layer::kAlbedo) beside.values = Values::kNumbers;
     Result<PictureWriter> created = PictureWriter::Create(path, beside);

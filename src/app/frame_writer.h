@@ -20,6 +20,7 @@ namespace sheaf {
 struct Frame {
   const Camera* camera;
   std::string path;
+  std::string format;  // what the path has to end in, without the dot; empty: it does
   std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
 };
 

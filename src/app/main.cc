@@ -20,6 +20,7 @@
 #include "sheaf/version.h"
 #include "src/app/commands.h"
 #include "src/app/exit_code.h"
+#include "src/app/print_message.h"
 #include "src/app/standard_output.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
@@ -98,6 +99,34 @@ std::optional<std::string> FindEmptyValue(int argc, char** argv) {
   return std::nullopt;
 }
 
+bool IsNamed(const CLI::Option& option, std::string_view word) {
+  const auto has = [&](const std::vector<std::string>& names, std::string_view dashes) {
+    return word.starts_with(dashes) &&
+           std::find(names.begin(), names.end(), word.substr(dashes.size())) != names.end();
+  };
+  return has(option.get_lnames(), "--") || has(option.get_snames(), "-");
+}
+
+// The option whose value is missing: it is the last word, or the next one is another option, which
+// CLI11 would take for the value.
+std::optional<std::string> FindMissingValue(const CLI::App& app, int argc, char** argv) {
+  const auto find = [&](std::string_view word) {
+    const auto options = app.get_options();
+    const auto found = std::find_if(options.begin(), options.end(),
+                                    [&](const CLI::Option* o) { return IsNamed(*o, word); });
+    return found == options.end() ? nullptr : *found;
+  };
+  for (int i = 2; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const CLI::Option* option = find(argv[i]);
+    if (option == nullptr || option->get_items_expected_min() == 0) continue;
+    ++i;  // its value
+    if (i == argc) return fmt::format("{}: no value follows", argv[i - 1]);
+    if (find(argv[i]) == nullptr) continue;
+    return fmt::format("{}: no value follows, but the option {}", argv[i - 1], argv[i]);
+  }
+  return std::nullopt;
+}
+
 // Answers what CLI11 threw. Help and version come as exceptions too.
 ExitCode ReportParse(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::CallForHelp*>(&error) != nullptr) {
@@ -148,6 +177,13 @@ ExitCode Main(int argc, char** argv) {
   if (const auto word = FindEmptyValue(argc, argv)) {
     return Report({ErrorKind::kUsage, fmt::format("{}: nothing follows the =", Printable(*word))});
   }
+  for (const auto& [subcommand, command] : commands) {
+    if (subcommand->get_name() != argv[1]) continue;
+    if (const auto missing = FindMissingValue(*subcommand, argc, argv)) {
+      return Report({ErrorKind::kUsage,
+                     fmt::format("{} (see sheaf {} --help)", *missing, subcommand->get_name())});
+    }
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -166,7 +202,7 @@ int GuardedMain(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fputs("sheaf: not enough memory\n", stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "sheaf: internal error: %s\n", error.what());
+    PrintMessage(fmt::format("sheaf: internal error: {}", error.what()));
   }
   return static_cast<int>(ExitCode::kInternal);
 }

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <utility>
 #include <variant>
 
 #include "sheaf/target.h"
 #include "src/app/interrupt.h"
+#include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/formats/printable.h"
 #include "src/lab/picture_metrics.h"
@@ -212,7 +212,7 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
     const auto peer = MeasurePovRay(scene, camera, base, film);
     if (!peer && peer.error().kind == ErrorKind::kInterrupted) return peer.error();
     if (!peer) {
-      std::fprintf(stderr, "sheaf: %s; the report goes without it\n", peer.error().message.c_str());
+      PrintMessage(fmt::format("sheaf: {}; the report goes without it", peer.error().message));
       has_peer = false;
       points.resize(settings.size());
       continue;

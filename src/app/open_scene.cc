@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <utility>
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
+#include "src/app/print_message.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 #include "src/formats/read_scene.h"
@@ -105,19 +105,24 @@ Status CheckStrict(const std::string& path, const std::vector<std::string>& warn
                                       warnings.size(), warnings.size() == 1 ? "" : "s"));
 }
 
-Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options) {
+Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options,
+                                      Warnings kept) {
   Result<OpenedScene> opened = OpenSceneWithWarnings(path, options);
   if (!opened) return opened;
   const std::vector<std::string>& warnings = opened.value().warnings;
   for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "%s%s\n", options.strict ? "" : "sheaf: warning: ", warning.c_str());
+    if (options.strict) {
+      PrintMessage(warning);
+    } else if (kept == Warnings::kPrinted) {
+      PrintMessage("sheaf: warning: " + warning);
+    }
   }
   if (const Status strict = CheckStrict(path, warnings, options); !strict) return strict.error();
   return opened;
 }
 
-Result<Scene> OpenScene(const std::string& path, const SceneOptions& options) {
-  Result<OpenedScene> opened = OpenSceneAndFiles(path, options);
+Result<Scene> OpenScene(const std::string& path, const SceneOptions& options, Warnings kept) {
+  Result<OpenedScene> opened = OpenSceneAndFiles(path, options, kept);
   if (!opened) return opened.error();
   return std::move(opened.value().scene);
 }

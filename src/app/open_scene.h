@@ -41,9 +41,12 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
 Status CheckStrict(const std::string& path, const std::vector<std::string>& warnings,
                    const SceneOptions& options);
 
-// A scene whose warnings are printed on stderr, unless they are errors.
-Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options);
-Result<Scene> OpenScene(const std::string& path, const SceneOptions& options);
+// A scene whose warnings are printed on stderr, or kept; errors in any case where they may not be.
+enum class Warnings { kPrinted, kKept };
+Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options,
+                                      Warnings kept = Warnings::kPrinted);
+Result<Scene> OpenScene(const std::string& path, const SceneOptions& options,
+                        Warnings kept = Warnings::kPrinted);
 
 // A file that a command writes, and the option that asks for it.
 struct Output {

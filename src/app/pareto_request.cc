@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <limits>
 
 #include "src/app/add_options.h"
+#include "src/app/print_message.h"
 
 namespace sheaf {
 
@@ -35,7 +35,7 @@ void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
 }
 
 void Say(const ParetoRequest& request, const std::string& line) {
-  if (!request.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+  if (!request.quiet) PrintMessage(line);
 }
 
 }  // namespace sheaf

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "src/app/interrupt.h"
+#include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
@@ -57,7 +58,7 @@ std::size_t TerminalColumns() {
 }  // namespace
 
 ReadingNotice::ReadingNotice(ProgressStyle style, const std::string& path) : style_(style) {
-  if (style_ == ProgressStyle::kBar) PrintError(fmt::format("reading {}", path));
+  if (style_ == ProgressStyle::kBar) PrintError(fmt::format("reading {}", PrintablePath(path)));
 }
 
 ReadingNotice::~ReadingNotice() {

@@ -1,9 +1,9 @@
 #include "src/app/render_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "sheaf/scene.h"
@@ -12,6 +12,7 @@
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/layer_picture.h"
+#include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/app/render_request.h"
 #include "src/app/standard_output.h"
@@ -23,17 +24,37 @@
 namespace sheaf {
 namespace {
 
+// Whether the picture's format is known and can hold what is asked for.
+Status CheckFormat(const RenderRequest& request) {
+  const std::string named = FormatPath(request.output, request.format);
+  const bool is_stdout = request.output == kStandardOutputPath;
+  if (const Status known = CheckPicturePath(named); !known) {
+    if (!is_stdout) return known;
+    return Usage(fmt::format("-o {}: needs --format, because its name does not tell the format",
+                             request.output));
+  }
+  if (is_stdout && request.statistics == "-") {
+    return Usage("-o, --json: both to standard output; --json=FILE writes a file");
+  }
+  if (is_stdout && isatty(STDOUT_FILENO) != 0) {
+    return Usage(fmt::format("-o {}: a terminal shows no pictures", request.output));
+  }
+  if (!request.layers.empty() && !request.format.empty() && !HoldsLayers(named)) {
+    return Usage(
+        fmt::format("--aov, --format {}: has no layers in it, and no path for files beside it",
+                    request.format));
+  }
+  return request.bits ? CheckPictureBits(named, *request.bits) : Status(Done{});
+}
+
 // Finds what is wrong before the scene is read: first the command line, then where to write.
 Status CheckCommandLine(const RenderRequest& request) {
   if (request.choice.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
     return Usage(
         fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
   }
-  if (const Status known = CheckPicturePath(request.output); !known) return known;
-  if (request.bits) {
-    if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
-  }
-  if (request.crop && request.tile.parts > 0) {
+  if (const Status sound = CheckFormat(request); !sound) return sound;
+  if (request.crop && request.part) {
     return Usage("--tile, --crop: a part of the picture is one or the other");
   }
   if (const auto chosen = ChooseTarget(request.target); !chosen) return chosen.error();
@@ -72,8 +93,9 @@ Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene&
     const Result<std::string> path = ExpandPath(request.output, camera->name);
     if (!path) return path.error();
     if (const Status writable = CheckWritable(path.value()); !writable) return writable.error();
-    Frame frame{camera, path.value(), {}};
-    for (int i = 0; i < kLayerCount && !HoldsLayers(path.value()); ++i) {
+    Frame frame{camera, path.value(), request.format, {}};
+    const bool holds_layers = HoldsLayers(FormatPath(frame.path, frame.format));
+    for (int i = 0; i < kLayerCount && !holds_layers; ++i) {
       const Layer layer = static_cast<Layer>(i);
       if (!request.layers.has(layer)) continue;
       frame.beside.emplace_back(layer, LayerPath(path.value(), layer));
@@ -97,16 +119,17 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
     return Usage("--precision fast: needs a SIMD target, not --target scalar");
   }
   options.threads = request.threads.value_or(options.threads);
-  options.tile_size = request.tile.size.value_or(options.tile_size);
+  options.tile_size = request.tile_size.value_or(options.tile_size);
   options.layers = request.layers;
-  if (const int part = request.tile.part, parts = request.tile.parts; parts > 0) {
+  if (request.part) {
+    const auto [part, parts] = *request.part;
     if (parts > options.height) {
       return Usage(
           fmt::format("--tile {}/{}: the picture has {} rows", part, parts, options.height));
     }
     // Rows as even as can be, whatever the number of parts.
-    const auto row = [&](int i) {
-      return static_cast<int>(static_cast<std::int64_t>(options.height) * i / parts);
+    const auto row = [rows = std::int64_t{options.height}, count = parts](int i) {
+      return static_cast<int>(rows * i / count);
     };
     options.crop = PixelRect{0, row(part - 1), options.width, row(part)};
   }
@@ -170,13 +193,16 @@ Status WriteStatistics(const std::string& destination, const std::string& json) 
 }
 
 // Renders every camera. Each picture is written when it is ready, the statistics at the end.
-Status RunRender(const RenderRequest& request) {
+Status RunRender(const RenderRequest& given) {
+  RenderRequest request = given;
+  if (request.output == "-") request.output = kStandardOutputPath;
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckCommandLine(request); !sound) return sound;
   const ProgressStyle style = ChooseProgressStyle(request);
   const Result<OpenedScene> opened = [&] {
     const ReadingNotice notice(style, request.scene);
-    return OpenSceneAndFiles(request.scene, request.options);
+    return OpenSceneAndFiles(request.scene, request.options,
+                             request.quiet ? Warnings::kKept : Warnings::kPrinted);
   }();
   if (!opened) return opened.error();
   const Scene& scene = opened.value().scene;
@@ -196,11 +222,10 @@ Status RunRender(const RenderRequest& request) {
     Result<FrameRecord> record =
         RenderFrame(scene, request.scene, frame, options.value(), request.bits, style, label);
     if (!record) return record.error();
-    // Not fmt::print: it throws where stderr is gone, which is no reason to stop.
     std::vector<std::string> paths = {frame.path};
     for (const auto& [layer, path] : frame.beside) paths.push_back(path);
     for (const std::string& path : paths) {
-      if (!request.quiet) std::fprintf(stderr, "wrote %s\n", path.c_str());
+      if (!request.quiet) PrintMessage("wrote " + path);
     }
     records.push_back(std::move(record).value());
   }

@@ -9,20 +9,14 @@
 namespace sheaf {
 namespace {
 
-// "32" or "2/8".
-std::optional<TileChoice> ParseTile(const std::string& text) {
-  TileChoice tile;
+// "2/8".
+std::optional<PicturePart> ParsePart(const std::string& text) {
   const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) {
-    tile.size = ParseInteger(text, 1, kMaxTileSize);
-    return tile.size ? std::optional(tile) : std::nullopt;
-  }
+  if (slash == std::string::npos) return std::nullopt;
   const auto parts = ParseInteger(text.substr(slash + 1), 1, kMaxImageSide);
   const auto part = ParseInteger(text.substr(0, slash), 1, parts.value_or(1));
   if (!parts || !part) return std::nullopt;
-  tile.part = *part;
-  tile.parts = *parts;
-  return tile;
+  return PicturePart{*part, *parts};
 }
 
 }  // namespace
@@ -34,6 +28,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   const std::string picture = fmt::format(
       "The picture, {} (needed); {{camera}} becomes the camera's name", PictureEndings());
   AddOutput(app, request.output, "PATH", picture.c_str());
+  AddPictureFormat(app, request.format);
   AddSize(app, request.size);
   AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddInteger(app, "--max-depth", request.max_depth, 0, kMaxDepth,
@@ -55,11 +50,11 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
             "a list of depth, normal, albedo, id, heat", layers.c_str(), &ParseLayers);
   AddBits(app, request.bits);
   AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
-  AddParsed(app, "--tile", request.tile, "N|I/N",
-            fmt::format("a size of 1 to {}, or a part like 2/8", kMaxTileSize),
-            "Pixels a side of a tile, which change no picture but in fast precision; I/N: part I "
-            "of N alone",
-            &ParseTile);
+  AddParsed(app, "--tile", request.part, "I/N",
+            "a part like 2/8 (--tile-size is for pixels a side)", "Render part I of N alone",
+            &ParsePart);
+  AddInteger(app, "--tile-size", request.tile_size, 1, kMaxTileSize,
+             "Pixels a side of a thread's tile, which change no picture but in fast precision");
   AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
             "What stderr shows meanwhile");
   AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");

@@ -16,10 +16,9 @@ class App;
 
 namespace sheaf {
 
-// What --tile says: pixels a side of a tile, or which of how many parts of the picture.
-struct TileChoice {
-  std::optional<int> size;
-  int part = 0, parts = 0;  // 0 parts: the whole picture
+// What --tile says: which of how many parts of the picture, from 1.
+struct PicturePart {
+  int part, parts;
 };
 
 // The command line as it was given. What is absent comes from the scene.
@@ -27,14 +26,15 @@ struct RenderRequest {
   SceneOptions options;
   std::string scene;
   CameraChoice choice;
-  std::string output;
+  std::string output;  // "-": standard output
+  std::string format;  // of --format; empty: by the path's ending
   std::optional<PixelSize> size;
   std::optional<int> samples, max_depth;
   std::optional<double> contrast, min_throughput;
   std::string target = "auto";
   std::string precision = "strict";
-  std::optional<int> threads, bits;
-  TileChoice tile;
+  std::optional<int> threads, bits, tile_size;
+  std::optional<PicturePart> part;
   std::optional<PixelRect> crop;
   Layers layers;  // of --aov
   std::string progress = "auto";

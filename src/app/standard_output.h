@@ -8,7 +8,8 @@
 
 namespace sheaf {
 
-// Writes and flushes. kInputOutput where the reader is gone or the disk is full.
+// Writes lines and flushes. Control characters between them are shown as \u00XX, which in JSON
+// means the same. kInputOutput where the reader is gone or the disk is full.
 Status WriteStandardOutput(std::string_view text);
 
 }  // namespace sheaf

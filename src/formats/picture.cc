@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/formats/format_table.h"
+#include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
@@ -17,7 +18,7 @@ const FormatRow* PictureFormat(const std::string& path) {
 
 Error UnknownFormat(const std::string& path) {
   return {ErrorKind::kUsage, fmt::format("{}: unknown picture format; the name must end in {}",
-                                         path, PictureEndings())};
+                                         PrintablePath(path), PictureEndings())};
 }
 
 }  // namespace
@@ -61,10 +62,11 @@ Result<PictureWriter> PictureWriter::Create(const std::string& path, int width, 
 }
 
 Result<PictureWriter> PictureWriter::Create(const std::string& path, const PictureSpec& spec) {
-  const FormatRow* row = PictureFormat(path);
-  if (row == nullptr) return UnknownFormat(path);
+  const std::string named = spec.format.empty() ? path : "." + spec.format;
+  const FormatRow* row = PictureFormat(named);
+  if (row == nullptr) return UnknownFormat(named);
   if (spec.bits != 0) {
-    if (const Status fits = CheckPictureBits(path, spec.bits); !fits) return fits.error();
+    if (const Status fits = CheckPictureBits(named, spec.bits); !fits) return fits.error();
   }
   NewEncoder encoder = row->create_encoder(path, spec);
   if (!encoder) return encoder.error();

@@ -1,5 +1,7 @@
 #include "src/formats/read_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -8,6 +10,7 @@
 #include <utility>
 
 #include "src/formats/format_table.h"
+#include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 #include "src/formats/scene_json.h"
 
@@ -34,6 +37,12 @@ KeyLight Complete(Scene* scene) {
   return KeyLight::kAdded;
 }
 
+// Whether it begins with a brace or a comment. Files without an ending may be scenes all the same.
+bool LooksLikeJson(const std::string& text) {
+  const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  return first != std::string::npos && (text[first] == '{' || text[first] == '/');
+}
+
 }  // namespace
 
 bool IsScenePath(const std::string& path) {
@@ -57,10 +66,14 @@ Material PlainMaterial() {
 
 Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files) {
   const FormatRow* row = FindFormat(path);
-  if (row == nullptr || row->parse == nullptr) return ReadSceneJson(path, files);
-  const Result<std::string> text = ReadWholeFile(path, row->max_bytes);
+  const bool is_known = row != nullptr && row->parse != nullptr;
+  const Result<std::string> text = ReadWholeFile(path, is_known ? row->max_bytes : kMaxTextBytes);
   if (!text) return text.error();
-  return row->parse(text.value(), path, files);
+  if (is_known) return row->parse(text.value(), path, files);
+  if (LooksLikeJson(text.value())) return ParseSceneJson(text.value(), path, files);
+  return Error{ErrorKind::kScene,
+               fmt::format("{}: {}; a scene's name ends in {}", PrintablePath(path),
+                           row != nullptr ? "a picture" : "of no known format", SceneEndings())};
 }
 
 Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options) {

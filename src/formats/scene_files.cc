@@ -7,10 +7,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Absolute first: of a relative path whose first part is not there, weakly_canonical keeps it
+// relative.
 fs::path Canonical(const fs::path& path) {
   std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? fs::absolute(path, error).lexically_normal() : canonical;
+  const fs::path absolute = fs::absolute(path, error);
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
 }
 
 }  // namespace

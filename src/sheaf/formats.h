@@ -73,8 +73,8 @@ struct ReadSceneResult {
 
 // Reads a scene that can be rendered. A model without a camera gets one that frames it; one without
 // a light gets a key light, white ambient light and a bright background. A file of unknown ending
-// is read as scene JSON. kInputOutput where a file cannot be read, kScene where one is malformed,
-// with a message like `file:line: /json/path: what; did you mean "..."?`.
+// is read as scene JSON if it begins like one. kInputOutput where a file cannot be read, kScene
+// where one is malformed, with a message like `file:line: /json/path: what; did you mean "..."?`.
 SHEAF_API Result<ReadSceneResult> ReadScene(const std::string& path,
                                             const ReadOptions& options = {});
 
@@ -100,6 +100,8 @@ struct PictureSpec {
   int full_width = 0, full_height = 0;    // pixels, [1, kMaxImageSide]
   Transfer transfer = Transfer::kLinear;  // of a .png, which says so
   Values values = Values::kLight;
+  // The format, as an ending without its dot, e.g. "png"; empty: what the path's ending says.
+  std::string format;
   int bits = 0;              // a channel, one of FileFormat::bits; 0: 8 of a .png, 32 of others
   Layers layers;             // to write, where the format holds layers; the film has them
   PictureMetadata metadata;  // written where the format holds any
