@@ -106,14 +106,14 @@ Status CheckStrict(const std::string& path, const std::vector<std::string>& warn
 }
 
 Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options,
-                                      Warnings kept) {
+                                      Verbosity verbosity) {
   Result<OpenedScene> opened = OpenSceneWithWarnings(path, options);
   if (!opened) return opened;
   const std::vector<std::string>& warnings = opened.value().warnings;
   for (const std::string& warning : warnings) {
     if (options.strict) {
       PrintMessage(warning);
-    } else if (kept == Warnings::kPrinted) {
+    } else if (verbosity == Verbosity::kWarnings) {
       PrintMessage("sheaf: warning: " + warning);
     }
   }
@@ -121,8 +121,8 @@ Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOption
   return opened;
 }
 
-Result<Scene> OpenScene(const std::string& path, const SceneOptions& options, Warnings kept) {
-  Result<OpenedScene> opened = OpenSceneAndFiles(path, options, kept);
+Result<Scene> OpenScene(const std::string& path, const SceneOptions& options, Verbosity verbosity) {
+  Result<OpenedScene> opened = OpenSceneAndFiles(path, options, verbosity);
   if (!opened) return opened.error();
   return std::move(opened.value().scene);
 }

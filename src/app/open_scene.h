@@ -42,11 +42,11 @@ Status CheckStrict(const std::string& path, const std::vector<std::string>& warn
                    const SceneOptions& options);
 
 // A scene whose warnings are printed on stderr, or kept; errors in any case where they may not be.
-enum class Warnings { kPrinted, kKept };
+enum class Verbosity { kWarnings, kErrorsOnly };
 Result<OpenedScene> OpenSceneAndFiles(const std::string& path, const SceneOptions& options,
-                                      Warnings kept = Warnings::kPrinted);
+                                      Verbosity verbosity = Verbosity::kWarnings);
 Result<Scene> OpenScene(const std::string& path, const SceneOptions& options,
-                        Warnings kept = Warnings::kPrinted);
+                        Verbosity verbosity = Verbosity::kWarnings);
 
 // A file that a command writes, and the option that asks for it.
 struct Output {

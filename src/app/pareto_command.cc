@@ -37,8 +37,9 @@ std::string FrontText(const ParetoRequest& request, std::vector<ParetoPoint> poi
 }
 
 Status RunPareto(const ParetoRequest& request) {
-  const Result<Scene> scene = OpenScene(request.scene, request.options,
-                                        request.quiet ? Warnings::kKept : Warnings::kPrinted);
+  const Result<Scene> scene =
+      OpenScene(request.scene, request.options,
+                request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
   if (!scene) return scene.error();
   const auto cameras = ChooseCameras(request.choice, request.options, request.scene, scene.value());
   if (!cameras) return cameras.error();

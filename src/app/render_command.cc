@@ -202,7 +202,7 @@ Status RunRender(const RenderRequest& given) {
   const Result<OpenedScene> opened = [&] {
     const ReadingNotice notice(style, request.scene);
     return OpenSceneAndFiles(request.scene, request.options,
-                             request.quiet ? Warnings::kKept : Warnings::kPrinted);
+                             request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
   }();
   if (!opened) return opened.error();
   const Scene& scene = opened.value().scene;
