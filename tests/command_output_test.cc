@@ -262,7 +262,8 @@ TEST_CASE("a model is the same by its bare name and by a path") {
   const Outcome dotted = work.Run({"render", "./a.obj", "-o", work / "dotted.png"});
   fs::current_path(here);
   CHECK(bare.code == 0);
-  CHECK(Contains(bare.err, "warning: a.obj: mtllib: gone.mtl: cannot open"));
+  CHECK(Contains(bare.err, "warning: a.obj:"));
+  CHECK(Contains(bare.err, "gone.mtl"));
   CHECK(dotted.code == 0);
   CHECK(!ReadText(work / "bare.png").empty());
 }
