@@ -137,7 +137,8 @@ json CompleteScene() {
   return json::parse(R"({
     "$schema": "sheaf.schema.json",
     "settings": {"size": [64, 48], "samples": 4, "max_depth": 5, "background": [0.1, 0.2, 0.3],
-                 "ambient": 0.5, "exposure": 0.5, "srgb": true},
+                 "ambient": 0.5, "exposure": 0.5, "srgb": true,
+                 "environment": {"gradient": {"zenith": 1, "horizon": [1, 1, 0.5], "nadir": 0}}},
     "materials": [
       {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3]}},
        "ambient": 0.1, "kd": 0.5, "ks": 0.5, "shininess": 10, "reflect": 0.5,
@@ -294,8 +295,13 @@ TEST_CASE("schema and reader know the same keys, types and ranges") {
               .ok());
   REQUIRE(Outcome(complete.dump(1)) == "ok");
   REQUIRE(validator.Validate(complete));
+  json mapped = complete;
+  mapped["settings"]["environment"] = {
+      {"map", {{"image", "schema-texture.png"}, {"strength", 2}, {"rotation", 90}}}};
+  REQUIRE(Outcome(mapped.dump(1)) == "ok");
+  REQUIRE(validator.Validate(mapped));
 
-  // No key of the schema is missing from the complete scene, which the reader accepts.
+  // No key of the schema is missing from the complete scenes, which the reader accepts.
   std::set<const json*> properties;
   CollectProperties(schema, &properties);
   CHECK(properties.size() > 50);

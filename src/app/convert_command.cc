@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -89,6 +90,28 @@ Status WriteTextures(const TextureFiles& files, const std::string& output, Scene
   return Done{};
 }
 
+// The picture of the surroundings is written beside the scene, as PFM.
+std::string EnvironmentName(const std::string& output) {
+  return fmt::format("{}-environment.pfm", std::filesystem::path(output).stem().string());
+}
+
+EnvironmentMap* EnvironmentMapOf(Scene& scene) {
+  auto& environment = scene.settings.environment;
+  return environment ? std::get_if<EnvironmentMap>(&*environment) : nullptr;
+}
+
+Status WriteEnvironment(const std::string& output, Scene* scene) {
+  EnvironmentMap* map = EnvironmentMapOf(*scene);
+  if (map == nullptr) return Done{};
+  FloatImage renamed = *map->image;
+  renamed.name = EnvironmentName(output);
+  Film film(renamed.width, renamed.height);
+  std::copy(renamed.rgb.begin(), renamed.rgb.end(), film.rgb.begin());
+  const std::string path = PathBeside(output, renamed.name);
+  map->image = std::make_shared<const FloatImage>(std::move(renamed));
+  return WritePicture(film, Transfer::kLinear, path);
+}
+
 Status ConvertScene(const ConvertRequest& request) {
   if (request.bits || !request.transfer.empty()) {
     return Usage(fmt::format("{}: for pictures, and {} is a scene",
@@ -109,10 +132,15 @@ Status ConvertScene(const ConvertRequest& request) {
   for (const auto& [image, file] : textures) {
     outputs.push_back({"-o", PathBeside(request.output, file.name)});
   }
+  if (EnvironmentMapOf(scene) != nullptr) {
+    outputs.push_back({"-o", PathBeside(request.output, EnvironmentName(request.output))});
+  }
   const Status apart = CheckOutputs(outputs, opened.value().files);
   if (!apart) return apart;
   const Status written = WriteTextures(textures, request.output, &scene);
   if (!written) return written;
+  const Status surrounded = WriteEnvironment(request.output, &scene);
+  if (!surrounded) return surrounded;
   MakeNamesUnique(&scene);
   return WriteFileWhole(request.output, SceneJsonText(scene));
 }

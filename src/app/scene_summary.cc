@@ -43,7 +43,9 @@ SceneSummary Summarize(const Scene& scene) {
   const auto any_camera = [&](auto test) {
     return std::any_of(scene.cameras.begin(), scene.cameras.end(), test);
   };
-  const Colour ambient_light = scene.settings.ambient.value_or(scene.settings.background);
+  const bool has_environment = scene.settings.environment.has_value();
+  const Colour ambient_light =
+      scene.settings.ambient.value_or(has_environment ? Colour(1.0) : scene.settings.background);
   const bool lit = any_material(
       [](const Material& m) { return m.kd > 0.0 || m.ks > 0.0 || m.metallic_roughness; });
   summary.features = {
@@ -59,6 +61,7 @@ SceneSummary Summarize(const Scene& scene) {
              m, [&](const char* /*name*/, const Texture& /*texture*/) { has_texture = true; });
          return has_texture;
        })},
+      {"environment", has_environment},
       {"normal maps", any_material([](const Material& m) { return m.normal_map.has_value(); })},
       {"alpha", any_material([](const Material& m) { return m.alpha.mode != AlphaMode::kOpaque; })},
       {"smooth normals", any_mesh([](const Mesh& m) { return !m.normals.empty(); })},

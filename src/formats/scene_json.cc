@@ -173,7 +173,7 @@ Scene ReadRoot(const JsonCursor& root, const JsonErrors& errors, const std::stri
   JsonObject object(root);
   std::string schema;
   object.Optional("$schema").ReadString(&schema);
-  scene.settings = ReadSettings(object.Optional("settings"), &reading.source.decode);
+  scene.settings = ReadSettings(object.Optional("settings"), &reading.source);
 
   NameTable materials("material"), objects("object"), lights("light"), cameras("camera");
   object.Optional("materials").ForEachElement([&](const JsonCursor& element) {

@@ -1,6 +1,16 @@
 #include "src/formats/scene_settings.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "sheaf/formats.h"
+#include "src/core/match.h"
+#include "src/formats/printable.h"
+#include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
@@ -8,11 +18,86 @@ namespace {
 constexpr NumberRange kImageSide{1.0, kMaxImageSide, "an integer in [1, 65536]"};
 constexpr NumberRange kSampleCount{1.0, kMaxSamples, "an integer in [1, 65536]"};
 constexpr NumberRange kDepthLimit{0.0, kMaxDepth, "an integer in [0, 1000000]"};
+constexpr NumberRange kRotation{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
+
+// Nothing where the picture cannot be had, which is an error.
+std::shared_ptr<const FloatImage> ReadFloatImage(const JsonCursor& value, ColourSource* source) {
+  std::string reference;
+  if (!value.ReadString(&reference)) return nullptr;
+  const auto failed = [&](const std::string& message) {
+    value.Fail(fmt::format("{}: {}", Printable(reference), message));
+    return nullptr;
+  };
+  const Result<std::string> path = source->files.Resolve(source->path, reference);
+  if (!path) return failed(path.error().message);
+  Result<ReadPictureResult> read = ReadPicture(path.value());
+  if (!read) return failed(read.error().message);
+  const ReadPictureResult& picture = read.value();
+  const Film& film = picture.film;
+  if (film.width > kMaxTextureSide || film.height > kMaxTextureSide) {
+    return failed(
+        fmt::format("{}x{}; sides may be 1 to {}", film.width, film.height, kMaxTextureSide));
+  }
+  FloatImage image{std::filesystem::path(reference).filename().string(),
+                   film.width,
+                   film.height,
+                   {film.rgb.begin(), film.rgb.end()}};
+  for (float& light : image.rgb) {
+    // What a display shows is sRGB unless the file says that it is light.
+    if (picture.is_display && !picture.is_linear) {
+      light = static_cast<float>(SrgbDecode(static_cast<double>(light)));
+    }
+    if (!(light >= 0 && light <= std::numeric_limits<float>::max())) {
+      return failed("it has a number that is negative or not finite");
+    }
+  }
+  return std::make_shared<const FloatImage>(std::move(image));
+}
+
+void ReadEnvironment(const JsonCursor& value, ColourSource* source,
+                     std::optional<Environment>* out) {
+  JsonObject object(value);
+  const JsonCursor kind = object.OneOf({"gradient", "map"});
+  if (kind.present() && kind.key() == "gradient") {
+    Gradient gradient;
+    JsonObject members(kind);
+    ReadPictureColour(members.Required("zenith"), source->decode, &gradient.zenith);
+    ReadPictureColour(members.Required("horizon"), source->decode, &gradient.horizon);
+    ReadPictureColour(members.Required("nadir"), source->decode, &gradient.nadir);
+    members.Finish();
+    *out = gradient;
+  } else if (kind.present()) {
+    EnvironmentMap map;
+    JsonObject members(kind);
+    map.image = ReadFloatImage(members.Required("image"), source);
+    members.Optional("strength").Read(kStrength, &map.strength);
+    members.Optional("rotation").Read(kRotation, &map.rotation);
+    members.Finish();
+    if (map.image) *out = map;
+  }
+  object.Finish();
+}
+
+Json EnvironmentJson(const Environment& environment) {
+  return Match(
+      environment,
+      [](const Gradient& gradient) -> Json {
+        return {{"gradient",
+                 {{"zenith", VectorJson(gradient.zenith)},
+                  {"horizon", VectorJson(gradient.horizon)},
+                  {"nadir", VectorJson(gradient.nadir)}}}};
+      },
+      [](const EnvironmentMap& map) -> Json {
+        return {
+            {"map",
+             {{"image", map.image->name}, {"strength", map.strength}, {"rotation", map.rotation}}}};
+      });
+}
 
 }  // namespace
 
-Settings ReadSettings(const JsonCursor& value, Transfer* decode) {
+Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   Settings settings;
   if (!value.present()) return settings;
   JsonObject object(value);
@@ -28,9 +113,12 @@ Settings ReadSettings(const JsonCursor& value, Transfer* decode) {
     if (srgb.text() != "pictures") srgb.Fail("expected true, false or \"pictures\"");
     settings.transfer = Transfer::kSrgb;
   } else if (srgb.ReadBoolean(&is_srgb)) {
-    settings.transfer = *decode = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
+    settings.transfer = source->decode = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
   }
-  ReadPictureColour(object.Optional("background"), *decode, &settings.background);
+  ReadPictureColour(object.Optional("background"), source->decode, &settings.background);
+  if (const JsonCursor environment = object.Optional("environment"); environment.present()) {
+    ReadEnvironment(environment, source, &settings.environment);
+  }
   // The ambient colour is light, and the colours of lights are always linear.
   Colour ambient;
   if (ReadColour(object.Optional("ambient"), kStrength, &ambient)) settings.ambient = ambient;
@@ -45,6 +133,7 @@ Json SettingsJson(const Settings& settings) {
                {"max_depth", settings.max_depth},
                {"background", VectorJson(settings.background)},
                {"exposure", settings.exposure}};
+  if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
   json["srgb"] = settings.transfer == Transfer::kSrgb ? Json("pictures") : Json(false);
   return json;

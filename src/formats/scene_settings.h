@@ -4,12 +4,13 @@
 
 #include "sheaf/scene.h"
 #include "src/formats/json_cursor.h"
+#include "src/formats/scene_materials.h"
 #include "src/formats/scene_values.h"
 
 namespace sheaf {
 
-// Sets `decode` to how the colours of the file are encoded.
-Settings ReadSettings(const JsonCursor& value, Transfer* decode);
+// Sets how the source decodes colours.
+Settings ReadSettings(const JsonCursor& value, ColourSource* source);
 
 Json SettingsJson(const Settings& settings);
 

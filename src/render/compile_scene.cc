@@ -45,7 +45,7 @@ void StoreBaseColour(BaseColour kind, const Checker& checker, MaterialData<Real>
 }
 
 template <typename Real>
-MaterialData<Real> CompileMaterial(const Material& material, const Settings& settings) {
+MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambient) {
   MaterialData<Real> data{};
   Match(
       material.base_colour,
@@ -56,7 +56,7 @@ MaterialData<Real> CompileMaterial(const Material& material, const Settings& set
       [&](const Texture& texture) {
         StoreBaseColour(BaseColour::kTexture, {texture.factor, texture.factor}, data);
       });
-  Store(material.ambient * settings.ambient.value_or(settings.background), data.ambient);
+  Store(material.ambient * ambient, data.ambient);
   Store(material.emission, data.emission);
   data.kd = static_cast<Real>(material.kd);
   data.ks = static_cast<Real>(material.ks);
@@ -244,14 +244,64 @@ double PlaneStep(const ProjectionKind& kind, double number, int height) {
   return 1;
 }
 
+template <typename Real>
+void CompileEnvironment(const Environment& environment, CompiledScene<Real>& compiled) {
+  EnvironmentData<Real>& data = compiled.environment;
+  Match(
+      environment,
+      [&](const Gradient& gradient) {
+        data.kind = EnvironmentKind::kGradient;
+        Store(gradient.zenith, data.zenith);
+        Store(gradient.horizon, data.horizon);
+        Store(gradient.nadir, data.nadir);
+      },
+      [&](const EnvironmentMap& map) {
+        data.kind = EnvironmentKind::kMap;
+        compiled.environment_image = map.image;
+        data.rgb = map.image->rgb.data();
+        data.width = map.image->width;
+        data.height = map.image->height;
+        data.strength = static_cast<Real>(map.strength);
+        data.turns = static_cast<Real>(map.rotation / 360);
+      });
+}
+
+// A row's share of the sphere is the difference of the cosines of its edges.
+Colour MeanOf(const FloatImage& image) {
+  Colour sum(0.0);
+  const double quarters = 2.0 / image.height;
+  for (int y = 0; y < image.height; ++y) {
+    Colour row(0.0);
+    const auto width = static_cast<std::size_t>(image.width);
+    const float* rgb = image.rgb.data() + 3 * width * static_cast<std::size_t>(y);
+    for (std::size_t x = 0; x < width; ++x, rgb += 3) row += Colour(rgb[0], rgb[1], rgb[2]);
+    const double share =
+        scalar::SinCosOf(quarters * y).cos - scalar::SinCosOf(quarters * (y + 1)).cos;
+    sum += row * (share / 2 / image.width);
+  }
+  return sum;
+}
+
 }  // namespace
+
+Colour AmbientLightOf(const Settings& settings) {
+  if (settings.ambient) return *settings.ambient;
+  if (!settings.environment) return settings.background;
+  return Match(
+      *settings.environment,
+      [](const Gradient& gradient) {
+        return gradient.horizon * 0.5 + (gradient.zenith + gradient.nadir) * 0.25;
+      },
+      [](const EnvironmentMap& map) { return MeanOf(*map.image) * map.strength; });
+}
 
 template <typename Real>
 CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement) {
   CompiledScene<Real> compiled;
   const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
+  const Colour ambient = AmbientLightOf(scene.settings);
   for (const Material& material : scene.materials) {
-    MaterialData<Real> data = CompileMaterial<Real>(material, scene.settings);
+    MaterialData<Real> data = CompileMaterial<Real>(material, ambient);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
       data.texture = CompileTexture(*texture, compiled);
     }
@@ -270,6 +320,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
   }
   Store(scene.settings.background, compiled.background);
+  if (scene.settings.environment) CompileEnvironment(*scene.settings.environment, compiled);
   return compiled;
 }
 

@@ -24,9 +24,14 @@ struct CompiledScene {
   std::vector<Real> decode[2];  // by Transfer, 256 each; empty where no texture has it
   std::vector<LightData<Real>> lights;
   Real background[3];
+  EnvironmentData<Real> environment;
+  std::shared_ptr<const FloatImage> environment_image;  // that the environment shows, or null
 
   GeometryView<Real> geometry() const { return objects.data.arrays.view(); }
 };
+
+// The ambient light of a scene: its own, or what all around it gives on average.
+Colour AmbientLightOf(const Settings& settings);
 
 // Without the tree: objects.data.BuildTree.
 template <typename Real>

@@ -67,6 +67,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
                  frame->sample_y,
                  CompileCamera<Real>(camera, options.width, options.height, placement),
                  {compiled.background[0], compiled.background[1], compiled.background[2]},
+                 compiled.environment,
                  options.max_depth,
                  options.width,
                  options.height,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "simd/query.h"
+#include "src/render/fill_environment.h"
 #include "src/render/find_surfaces.h"
 #include "src/render/store_layers.h"
 #include "src/render/sum_colours.h"
@@ -104,7 +105,7 @@ void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream
   clock_.Charge(Phase::kBin);
 
   const ColourOutput<Real> seen = colours.output();
-  FillColours(frame_.background, binner_.missed_rays(), batch.count, seen);
+  FillEnvironment(frame_, batch.rays, binner_.missed_rays(), batch.count, seen);
   next_reflected_.StartParents();
   next_refracted_.StartParents();
   for (const HitBin& bin : binner_.bins()) {

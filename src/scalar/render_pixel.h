@@ -15,6 +15,7 @@
 #include "simd/query.h"
 #include "simd/shading.h"
 #include "src/scalar/camera_ray.h"
+#include "src/scalar/environment.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/pass_light.h"
 #include "src/scalar/shadow_ray.h"
@@ -88,7 +89,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
     for (const Path<Real>& path : scratch.paths) {
       const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
       if (hit.primitive == kNoPrimitive) {
-        Accumulate(sum, path.throughput, FromArray(frame.background));
+        Accumulate(sum, path.throughput, ColourBeyond(frame, path.ray.direction));
         continue;
       }
       const MaterialData<Real>& material =

@@ -36,6 +36,7 @@ constexpr Range kAny{-kLargest, kLargest, "a finite float"};
 constexpr Range kAtLeastZero{0, kLargest, "a finite float of at least 0"};
 constexpr Range kPositive{kSmallest, kLargest, "a finite float above 0"};
 constexpr Range kShare{0, 1, "a number in [0, 1]"};
+constexpr Range kTurn{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr Range kAngle{0, 90, "a number in [0, 90]"};
 
 // The first thing that is wrong with a part of a scene, if any.
@@ -83,23 +84,28 @@ class FirstFault {
   std::string text_;
 };
 
+// The sides of an image that has so many pixels.
+template <typename Picture>
+void CheckSides(const std::string& name, const Picture& image, std::size_t pixels,
+                FirstFault& fault) {
+  constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};
+  fault.Number(name + ".width", image.width, kSide);
+  fault.Number(name + ".height", image.height, kSide);
+  const auto wanted =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (!fault.found() && pixels != wanted) {
+    fault.Fail(
+        fmt::format("{} has {} texels, not {} x {}", name, pixels, image.width, image.height));
+  }
+}
+
 void CheckTexture(const std::string& name, const Texture& texture, FirstFault& fault) {
   fault.Components(name + ".factor", texture.factor, kAtLeastZero);
   fault.Components(name + ".transform.offset", texture.transform.offset, kAny);
   fault.Components(name + ".transform.scale", texture.transform.scale, kAny);
-  fault.Number(name + ".transform.rotation", texture.transform.rotation,
-               {-1e6, 1e6, "a number in [-1e6, 1e6]"});
+  fault.Number(name + ".transform.rotation", texture.transform.rotation, kTurn);
   if (!texture.image) return fault.Fail(name + ".image is null");
-  const Image& image = *texture.image;
-  constexpr Range kSide{1, kMaxTextureSide, "a number in [1, 16384]"};
-  fault.Number(name + ".image.width", image.width, kSide);
-  fault.Number(name + ".image.height", image.height, kSide);
-  const auto texels =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  if (!fault.found() && image.texels.size() != texels) {
-    fault.Fail(fmt::format("{}.image has {} texels, not {} x {}", name, image.texels.size(),
-                           image.width, image.height));
-  }
+  CheckSides(name + ".image", *texture.image, texture.image->texels.size(), fault);
 }
 
 void Check(const Material& material, FirstFault& fault) {
@@ -200,12 +206,32 @@ void Check(const Camera& camera, FirstFault& fault) {
                {kSmallest, kind.largest, kind.range});
 }
 
+void Check(const Environment& environment, FirstFault& fault) {
+  Match(
+      environment,
+      [&](const Gradient& gradient) {
+        fault.Components("environment.zenith", gradient.zenith, kAtLeastZero);
+        fault.Components("environment.horizon", gradient.horizon, kAtLeastZero);
+        fault.Components("environment.nadir", gradient.nadir, kAtLeastZero);
+      },
+      [&](const EnvironmentMap& map) {
+        fault.Number("environment.strength", map.strength, kAtLeastZero);
+        fault.Number("environment.rotation", map.rotation, kTurn);
+        if (!map.image) return fault.Fail("environment.image is null");
+        CheckSides("environment.image", *map.image, map.image->rgb.size() / 3, fault);
+        const bool is_light = std::all_of(map.image->rgb.begin(), map.image->rgb.end(),
+                                          [](float x) { return kAtLeastZero.Has(x); });
+        if (!is_light) fault.Fail("environment.image has a number that is negative or not finite");
+      });
+}
+
 void Check(const Settings& settings, FirstFault& fault) {
   fault.Number("width", settings.width, {1, kMaxImageSide, "a number in [1, 65536]"});
   fault.Number("height", settings.height, {1, kMaxImageSide, "a number in [1, 65536]"});
   fault.Number("samples", settings.samples, {1, kMaxSamples, "a number in [1, 65536]"});
   fault.Number("max_depth", settings.max_depth, {0, kMaxDepth, "a number in [0, 1000000]"});
   fault.Components("background", settings.background, kAtLeastZero);
+  if (settings.environment) Check(*settings.environment, fault);
   if (settings.ambient) fault.Components("ambient", *settings.ambient, kAtLeastZero);
   fault.Number("exposure", settings.exposure, kPositive);
 }

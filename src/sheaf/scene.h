@@ -267,12 +267,37 @@ inline constexpr int kMaxImageSide = 65536;
 inline constexpr int kMaxSamples = 65536;
 inline constexpr int kMaxDepth = 1000000;
 
+// The colour of a ray that leaves the scene, by y of its unit direction: from the horizon's at 0
+// linearly to the zenith's at 1 and the nadir's at -1.
+struct Gradient {
+  Colour zenith{1.0}, horizon{1.0}, nadir{1.0};
+};
+
+// A picture of light. Rows from the top, red, green and blue of each pixel.
+struct FloatImage {
+  std::string name;           // for messages and for files made of it; may be empty
+  int width = 0, height = 0;  // [1, kMaxTextureSide]
+  std::vector<float> rgb;     // 3 * width * height, each >= 0 and finite
+};
+
+// All directions on a picture: longitude from left to right, -z in the middle and +x to the right
+// of it, latitude from +y at the top to -y.
+struct EnvironmentMap {
+  std::shared_ptr<const FloatImage> image;  // not null
+  double strength = 1.0;                    // >= 0: what its light is multiplied with
+  double rotation = 0.0;  // degrees in [-1e6, 1e6], counter-clockwise seen from +y
+};
+
+using Environment = std::variant<Gradient, EnvironmentMap>;
+
 struct Settings {
   int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
   int samples = 1;                // a pixel, [1, kMaxSamples]
   int max_depth = 5;              // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
-  std::optional<Colour> ambient;        // ambient light; the background where absent
+  std::optional<Environment> environment = std::nullopt;  // instead of the background
+  // Ambient light; where absent the background, or the mean over all directions of the environment.
+  std::optional<Colour> ambient;
   double exposure = 1.0;                // scales every light but the ambient one, > 0
   Transfer transfer = Transfer::kSrgb;  // of pictures of bytes; colours here are linear
 };

@@ -17,6 +17,19 @@ struct PrimitiveInfo {
   std::uint32_t index() const { return IndexIn(place); }
 };
 
+enum class EnvironmentKind { kColour, kGradient, kMap };
+
+// What rays see that leave the scene: src/scalar/environment.h.
+template <typename Real>
+struct EnvironmentData {
+  EnvironmentKind kind = EnvironmentKind::kColour;
+  Real zenith[3] = {}, horizon[3] = {}, nadir[3] = {};
+  const float* rgb = nullptr;  // of a map, 3 * width * height
+  int width = 0, height = 0;
+  Real strength = 0;
+  Real turns = 0;  // of the map, counter-clockwise seen from +y
+};
+
 template <typename Real>
 struct FrameView {
   GeometryView<Real> geometry;                // what surfaces are read from
@@ -28,7 +41,8 @@ struct FrameView {
   std::span<const LightData<Real>> lights;
   std::span<const Real> sample_x, sample_y;  // in [0, 1), one an element of the sample pattern
   CameraData<Real> camera;
-  Real background[3];
+  Real background[3];  // where the environment is one colour
+  EnvironmentData<Real> environment;
   int max_depth;
   int width, height;  // of the whole picture
   // Adaptive sampling: the contrast that is an edge (src/scalar/first_hit.h); NaN: all samples
