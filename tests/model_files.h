@@ -69,6 +69,13 @@ inline void CheckSurvives(const Folder& folder, const std::string& name, const s
   CheckRefused(folder.Write("empty-" + name, ""), "");
 }
 
+// A picture of one red pixel.
+inline const std::string kRedPng(
+    "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90wS\xde\0\0\0\x0cIDATx\x9c"
+    "c\xf8\xcf\xc0\0\0\3\1\1\0\xc9\xfe\x92\xef\0\0\0\0IEND\xae"
+    "B`\x82",
+    69);
+
 inline std::string PlyHeader(const std::string& format) {
   return "ply\nformat " + format +
          " 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty double y\n"

@@ -13,13 +13,6 @@ namespace {
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
 const std::string kFace = "f 1/1 2/2 3/3\n";
 
-// A picture of one red pixel.
-const std::string kPng(
-    "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90wS\xde\0\0\0\x0cIDATx\x9c"
-    "c\xf8\xcf\xc0\0\0\3\1\1\0\xc9\xfe\x92\xef\0\0\0\0IEND\xae"
-    "B`\x82",
-    69);
-
 struct Read {
   Material material;  // of the first object
   Mesh mesh;
@@ -119,8 +112,8 @@ TEST_CASE("MTL: a texture that cannot be read leaves the colour, with a warning"
 
 TEST_CASE("MTL: options of a texture, and names with blanks and backslashes") {
   const Folder folder;
-  folder.Write("sub/a b.png", kPng);
-  folder.Write("t#1.png", kPng);
+  folder.Write("sub/a b.png", kRedPng);
+  folder.Write("t#1.png", kRedPng);
   const auto texture = [](const Read& read) {
     CHECK(read.warnings.empty());
     return std::get<Texture>(read.material.base_colour);
@@ -142,7 +135,7 @@ TEST_CASE("MTL: options of a texture, and names with blanks and backslashes") {
 
 TEST_CASE("MTL: textures that nothing shows are said, of materials in use alone") {
   const Folder folder;
-  folder.Write("t.png", kPng);
+  folder.Write("t.png", kRedPng);
   const std::string other = "newmtl unused\nmap_Ks t.png\nmap_Kd gone.png\n";
   const Read read = ReadMtl(folder, "map_Kd t.png\nmap_Ka t.png\nmap_Ns t.png\n" + other);
   CHECK(read.warnings == std::vector<std::string>{"a.mtl:4: map_Ns is not read"});
@@ -180,7 +173,7 @@ TEST_CASE("MTL: names of materials and libraries with blanks, marks and comments
 
 TEST_CASE("MTL: whatever a library holds, the scene is one that can be rendered") {
   const Folder folder;
-  folder.Write("t.png", kPng);
+  folder.Write("t.png", kRedPng);
   const std::string whole =
       "newmtl m\nKd 0.5 1 2\nKs 1 1 1\nNs 1e9\nKe 1e9 0 0\nd 0.5\nNi 1e-9\nillum 7\n"
       "map_Kd -s 1e6 -1e6 -o 1e30 0 -clamp on t.png\n";

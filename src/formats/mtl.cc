@@ -40,13 +40,6 @@ constexpr MapOption kMapOptions[] = {
 };
 constexpr double kMostScale = 1e6;
 
-// Lines that name files of Windows.
-std::string WithSlashes(std::string_view reference) {
-  std::string path(reference);
-  std::replace(path.begin(), path.end(), '\\', '/');
-  return path;
-}
-
 Colour NotNegative(const Colour& colour) { return glm::max(colour, Colour(0.0)); }
 
 }  // namespace

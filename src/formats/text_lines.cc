@@ -1,5 +1,6 @@
 #include "src/formats/text_lines.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -74,6 +75,12 @@ std::string_view WithoutComment(std::string_view line) {
     return line.substr(0, end);
   }
   return line;
+}
+
+std::string WithSlashes(std::string_view path) {
+  std::string changed(path);
+  std::replace(changed.begin(), changed.end(), '\\', '/');
+  return changed;
 }
 
 }  // namespace sheaf

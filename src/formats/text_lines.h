@@ -19,6 +19,9 @@ std::string JoinLines(std::string_view text);
 // Up to the first # that follows a blank, without the blanks before it. Names may have one inside.
 std::string_view WithoutComment(std::string_view line);
 
+// A path as tools of Windows write it, as one that is understood here.
+std::string WithSlashes(std::string_view path);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_FORMATS_TEXT_LINES_H_

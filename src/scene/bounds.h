@@ -13,7 +13,7 @@ struct Bounds {
   Vec3d min, max;
 };
 
-// The smallest box around a shape; nothing around a mesh without vertices.
+// The smallest box around a shape; nothing around a mesh without triangles.
 std::optional<Bounds> BoundsOf(const Shape& shape);
 
 // The smallest box around all objects; nothing where there are none.

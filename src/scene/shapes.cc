@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
@@ -81,7 +82,17 @@ void ForEachExtreme(const Shape& shape, const std::function<void(const Vec3d&)>&
         for (const Vec3d& vertex : triangle.vertices) include(vertex);
       },
       [&](const Mesh& mesh) {
-        for (const glm::vec3& vertex : mesh.positions) include(Vec3d(vertex));
+        // What no triangle uses is not there: scans have such vertices, far away.
+        if (mesh.triangles.empty()) return;
+        glm::vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
+        for (const auto& triangle : mesh.triangles) {
+          for (const std::uint32_t vertex : triangle) {
+            low = glm::min(low, mesh.positions[vertex]);
+            high = glm::max(high, mesh.positions[vertex]);
+          }
+        }
+        include(Vec3d(low));
+        include(Vec3d(high));
       });
 }
 
