@@ -1,10 +1,13 @@
 // MTL: what materials become, and what is said of their libraries.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model_files.h"
+#include "src/formats/png.h"
 #include "src/formats/read_scene.h"
 
 namespace sheaf {
@@ -121,9 +124,9 @@ TEST_CASE("MTL: options of a texture, and names with blanks and backslashes") {
   const Read scaled =
       ReadMtl(folder, "Kd 1 1 1\nmap_Kd -s 4 2 1 -clamp on -o 0.1 -bm 2 sub\\a b.png\n");
   CHECK(texture(scaled).wrap_u == Wrap::kClamp);
-  CHECK(scaled.mesh.uv[0] == glm::vec2(0.1f, 1));
-  CHECK(scaled.mesh.uv[1] == glm::vec2(4.1f, 1));
-  CHECK(scaled.mesh.uv[2] == glm::vec2(0.1f, -1));  // v runs up in the file
+  const TextureTransform placed = texture(scaled).transform;
+  CHECK(placed.scale == glm::dvec2(4, 2));
+  CHECK(placed.offset == glm::dvec2(0.1, -1));  // v runs up in the file
   const Read plain = ReadMtl(folder, "map_Kd .\\sub\\a b.png # bricks\n");
   CHECK(texture(plain).factor == Colour(1.0));
   CHECK(plain.mesh.uv[2] == glm::vec2(0, 0));
@@ -139,6 +142,71 @@ TEST_CASE("MTL: textures that nothing shows are said, of materials in use alone"
   const std::string other = "newmtl unused\nmap_Ks t.png\nmap_Kd gone.png\n";
   const Read read = ReadMtl(folder, "map_Kd t.png\nmap_Ka t.png\nmap_Ns t.png\n" + other);
   CHECK(read.warnings == std::vector<std::string>{"a.mtl:4: map_Ns is not read"});
+}
+
+// Writes a picture of two texels, of 3 or 4 channels.
+void WriteTwo(const std::string& path, std::vector<std::uint8_t> bytes) {
+  const int channels = static_cast<int>(bytes.size() / 2);
+  REQUIRE(WritePng({2, 1, std::move(bytes), channels}, Transfer::kSrgb, path).ok());
+}
+
+TEST_CASE("MTL: textures of emission and normals") {
+  const Folder folder;
+  folder.Write("t.png", kRedPng);
+  WriteTwo(folder / "grey.png", {9, 9, 9, 80, 80, 80});
+  const Read glowing = ReadMtl(folder, "map_Ke t.png\n");
+  CHECK(glowing.material.emission == Colour(1.0));
+  REQUIRE(glowing.material.emission_texture.has_value());
+  CHECK(glowing.material.emission_texture->transfer == Transfer::kSrgb);
+  CHECK(ReadMtl(folder, "Ke 0 2 0\nmap_Ke t.png\n").material.emission == Colour(0, 2, 0));
+  CHECK(ReadMtl(folder, "Ke 0 2 0\nmap_Ke gone.png\n").material.emission == Colour(0, 2, 0));
+  CHECK(ReadMtl(folder, "map_Ke gone.png\n").material.emission == Colour(0.0));
+
+  const Read bumpy = ReadMtl(folder, "map_Bump -bm 0.5 t.png\n");
+  REQUIRE(bumpy.material.normal_map.has_value());
+  CHECK(bumpy.material.normal_map->scale == 0.5);
+  CHECK(bumpy.material.normal_map->texture.transfer == Transfer::kLinear);
+  const Read best = ReadMtl(folder, "bump grey.png\nnorm -s 2 2 t.png\n");
+  CHECK(best.warnings.empty());
+  CHECK(best.material.normal_map->texture.transform.scale == glm::dvec2(2));
+  const Read heights = ReadMtl(folder, "bump grey.png\n");
+  CHECK(!heights.material.normal_map.has_value());
+  CHECK(heights.warnings == std::vector<std::string>{"a.mtl:2: bump: heights are not read"});
+}
+
+TEST_CASE("MTL: a texture of opacity is the alpha of the base colour") {
+  const Folder folder;
+  folder.Write("t.png", kRedPng);
+  WriteTwo(folder / "cut.png", {0, 0, 0, 255, 255, 255});
+  WriteTwo(folder / "soft.png", {30, 60, 90, 255, 255, 255});
+  WriteTwo(folder / "own.png", {1, 2, 3, 7, 4, 5, 6, 255});
+  const auto texels = [](const Read& read) {
+    CHECK(read.warnings.empty());
+    CHECK(read.material.transmit == Colour(0.0));
+    return std::get<Texture>(read.material.base_colour).image->texels;
+  };
+  using Texels = std::vector<std::uint32_t>;
+  const Read cut = ReadMtl(folder, "Kd 0 1 0\nmap_d -clamp on cut.png\n");
+  CHECK(texels(cut) == Texels{0x00ffffff, 0xffffffff});
+  CHECK(std::get<Texture>(cut.material.base_colour).factor == Colour(0, 1, 0));
+  CHECK(std::get<Texture>(cut.material.base_colour).wrap_u == Wrap::kClamp);
+  CHECK(cut.material.alpha.mode == AlphaMode::kMask);
+  const Read soft = ReadMtl(folder, "map_Kd t.png\nmap_d soft.png\n");
+  CHECK(texels(soft) == Texels{0x3c0000ff, 0xff0000ff});
+  CHECK(soft.material.alpha.mode == AlphaMode::kBlend);
+  const Read own = ReadMtl(folder, "map_Kd own.png\nmap_d own.png\n");
+  CHECK(texels(own) == Texels{0x07030201, 0xff060504});
+  CHECK(own.material.alpha.mode == AlphaMode::kBlend);
+  CHECK(texels(ReadMtl(folder, "map_Kd t.png\nmap_d own.png\n")) == Texels{0x070000ff, 0xff0000ff});
+  const Read half = ReadMtl(folder, "d 0.5\nmap_Kd t.png\nmap_d cut.png\n");
+  CHECK(texels(half).size() == 2);
+  CHECK(half.material.alpha.mode == AlphaMode::kBlend);
+  CHECK(half.material.alpha.factor == 0.5);
+  // Nothing is cut away.
+  CHECK(ReadMtl(folder, "map_Kd t.png\nmap_d t.png\n").material.alpha.mode == AlphaMode::kOpaque);
+  CHECK(ReadMtl(folder, "d 0.5\nmap_d gone.png\n").material.transmit == Colour(0.5));
+  const Read placed = ReadMtl(folder, "map_Kd t.png\nmap_d -s 2 2 cut.png\n");
+  CHECK(placed.warnings == std::vector<std::string>{"a.mtl:3: map_d: placed as map_Kd is"});
 }
 
 TEST_CASE("MTL: names of materials and libraries with blanks, marks and comments") {
@@ -176,7 +244,7 @@ TEST_CASE("MTL: whatever a library holds, the scene is one that can be rendered"
   folder.Write("t.png", kRedPng);
   const std::string whole =
       "newmtl m\nKd 0.5 1 2\nKs 1 1 1\nNs 1e9\nKe 1e9 0 0\nd 0.5\nNi 1e-9\nillum 7\n"
-      "map_Kd -s 1e6 -1e6 -o 1e30 0 -clamp on t.png\n";
+      "map_Kd -s 4e5 -4e5 -o 1e30 0 -clamp on t.png\nmap_d -s 2 t.png\nmap_Bump -bm 9 t.png\n";
   Random random(7);
   for (int round = 0; round < 300; ++round) {
     std::string changed = whole;

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -105,6 +106,31 @@ TEST_CASE("NFF that is wrong") {
   refused("c 0 0 0 1 0 0 0 1\n", "one point");
   refused("c\n0 0 0 1\n", ":2: the file ends within a cone");
   refused("c\n0 0 0 1\ns 1 2 3 4\n", ":3: cone apex: expected a number");
+}
+
+TEST_CASE("NFF: what is not sound is left out where the rest can be read") {
+  const Folder folder;
+  const std::string sphere = "s 0 0 0 1\n";
+  const auto left_out = [&](const std::string& text, const std::string& warning) {
+    const std::string path = folder.Write("a.nff", sphere + text + sphere);
+    const auto read = ReadScene(path);
+    CAPTURE(MessageOf(read));
+    REQUIRE(read.ok());
+    CHECK(read.value().warnings == std::vector<std::string>{path + ":" + warning});
+    CHECK(std::count_if(read.value().scene.objects.begin(), read.value().scene.objects.end(),
+                        [](const Object& object) {
+                          return std::holds_alternative<Sphere>(object.shape);
+                        }) == 2);
+  };
+  left_out("c 0 0 0 1 0 0 0 1\nc 1 0 0 1 1 0 0 1\n",
+           "2: cone left out: its base and apex are one point (2 in all)");
+  left_out("p 2\n0 0 0\n1 0 0\n", "2: polygon left out: number of vertices: 2");
+  left_out("pp 0\n", "2: polygon left out: number of vertices: 0");
+  const std::string view =
+      "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\n";
+  left_out(view + view, "15: view left out: a second view");
+  left_out("v\nfrom 0 0 5\nat 0 0 5\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\n",
+           "8: view left out: it looks along its own up direction, or at its own eye");
 }
 
 }  // namespace

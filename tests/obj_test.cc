@@ -211,6 +211,9 @@ TEST_CASE("OBJ: colours of vertices, white for those without") {
   CHECK(read.mesh.colours[0] == glm::vec3(1));
   CHECK(read.mesh.colours[1] == glm::vec3(1, 0.5, 0));
   CHECK(ReadLossy(folder, kSquareObj + "f 1 2 3\n").mesh.colours.empty());
+  const Lossy odd = ReadLossy(folder, "v 0 0 0 1 nan 1\nv 1 0 0 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  CHECK(odd.mesh.colours[0] == glm::vec3(1));
+  CHECK(odd.warning == "1: rest of the line left out: \"nan\" is not finite, or beyond 1e30");
 }
 
 TEST_CASE("OBJ: concave polygons keep their area, in any position") {

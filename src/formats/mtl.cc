@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <glm/common.hpp>
 #include <utility>
 
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
-#include "src/formats/read_scene.h"
 #include "src/formats/text_lines.h"
 
 namespace sheaf {
@@ -22,10 +20,9 @@ constexpr std::pair<std::string_view, std::optional<double> MtlMaterial::*> kNum
     {"Tr", &MtlMaterial::tr}, {"illum", &MtlMaterial::illum},
 };
 
-// Textures that a material here has no place for.
-constexpr std::string_view kOtherMaps[] = {"map_Ka",   "map_Ks", "map_Ke", "map_Ns", "map_d",
-                                           "map_Pr",   "map_Pm", "map_Ps", "bump",   "map_bump",
-                                           "map_Bump", "norm",   "disp",   "decal",  "refl"};
+constexpr std::string_view kMaps[] = {
+    "map_Kd", "map_Ka", "map_Ks",   "map_Ke",   "map_Ns", "map_d", "map_Pr", "map_Pm",
+    "map_Ps", "bump",   "map_bump", "map_Bump", "norm",   "disp",  "decal",  "refl"};
 
 // What follows an option of a texture: so many numbers at most, or one word.
 struct MapOption {
@@ -38,13 +35,9 @@ constexpr MapOption kMapOptions[] = {
     {"-boost", 1},    {"-texres", 1}, {"-clamp", 0},         {"-blendu", 0},   {"-blendv", 0},
     {"-cc", 0, true}, {"-type", 0},   {"-imfchan", 0, true},
 };
-constexpr double kMostScale = 1e6;
-
-Colour NotNegative(const Colour& colour) { return glm::max(colour, Colour(0.0)); }
+constexpr double kMostPlacing = 4e5;  // so that scene JSON can say the sum of two and 1
 
 }  // namespace
-
-// ---- Reading ----
 
 void MtlLibraries::Read(std::string_view names, std::size_t line) {
   const std::string_view named = WithoutComment(names);
@@ -113,10 +106,8 @@ void MtlLibraries::ReadStatement(TextScanner& scanner, const std::string& path) 
     if (const auto number = ReadNumber(scanner, word, key, path)) material.*member = number;
     return;
   }
-  if (key == "map_Kd") {
-    material.map_kd = ReadMap(scanner, path);
-  } else if (std::find(std::begin(kOtherMaps), std::end(kOtherMaps), key) != std::end(kOtherMaps)) {
-    material.other_maps.emplace(key, ReadMap(scanner, path));
+  if (std::find(std::begin(kMaps), std::end(kMaps), key) != std::end(kMaps)) {
+    material.maps.insert_or_assign(std::string(key), ReadMap(scanner, path));
   }
 }
 
@@ -158,14 +149,15 @@ MtlMap MtlLibraries::ReadMap(TextScanner& scanner, const std::string& path) {
     scanner = ahead;
     for (; count < option->numbers; ++count) {
       const auto number = ahead.Number<double>();
-      if (!number || !(std::abs(*number) <= kMostScale)) break;
+      if (!number || !(std::abs(*number) <= kMostPlacing)) break;
       numbers[count] = *number;
       scanner = ahead;
     }
-    glm::vec2* const to = word == "-s" ? &map.scale : word == "-o" ? &map.offset : nullptr;
+    glm::dvec2* const to = word == "-s" ? &map.scale : word == "-o" ? &map.offset : nullptr;
     for (int i = 0; i < std::min(count, 2) && to != nullptr; ++i) {
-      (*to)[i] = static_cast<float>(numbers[i]);
+      (*to)[i] = numbers[i];
     }
+    if (word == "-bm" && count == 1) map.bump = numbers[0];
     if (option->changes_colour) {
       files_.Warn(PlaceOf(path, map.line), "an option of a texture is not read", word);
     }
@@ -174,71 +166,12 @@ MtlMap MtlLibraries::ReadMap(TextScanner& scanner, const std::string& path) {
   return map;
 }
 
-// ---- Materials ----
-
 std::optional<std::size_t> MtlLibraries::Find(std::string_view name) const {
   if (const auto same = index_.find(name); same != index_.end()) return same->second;
   for (std::size_t i = 0; i < materials_.size(); ++i) {
     if (WithoutComment(materials_[i].name) == WithoutComment(name)) return i;
   }
   return std::nullopt;
-}
-
-double MtlLibraries::OpacityOf(const MtlMaterial& from) {
-  const double opacity = std::clamp(from.d ? *from.d : 1 - from.tr.value_or(0), 0.0, 1.0);
-  const int illum = static_cast<int>(from.illum.value_or(2));
-  const bool is_glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
-  if (opacity > 0 || is_glass) return opacity;
-  // Some programs have written the one for the other, and nobody models what cannot be seen.
-  files_.Warn(PlaceOf(from.library, from.line), "material taken for opaque",
-              fmt::format("{} hides \"{}\" wholly", from.d ? "d 0" : "Tr 1", Printable(from.name)));
-  return 1;
-}
-
-std::shared_ptr<const Image> MtlLibraries::LoadImage(const MtlMaterial& from) {
-  const std::string& file = from.map_kd.file;
-  const std::string_view named = WithoutComment(file);
-  auto image = images_.Load(from.library, WithSlashes(file), files_);
-  if (!image && named != file) image = images_.Load(from.library, WithSlashes(named), files_);
-  if (image) return image.value();
-  files_.Warn(PlaceOf(from.library, from.map_kd.line), "map_Kd",
-              fmt::format("{}; untextured", image.error().message));
-  return nullptr;
-}
-
-Material MtlLibraries::ToMaterial(const MtlMaterial& from) {
-  Material material = PlainMaterial();
-  material.name = from.name;
-  const bool has_map = from.map_kd.line != 0;
-  // Many exporters leave Kd black beside a map.
-  const bool has_colour = from.kd && !(has_map && NotNegative(*from.kd) == Colour(0.0));
-  if (has_colour) material.base_colour = NotNegative(*from.kd);
-  if (auto image = has_map ? LoadImage(from) : nullptr) {
-    Texture texture;
-    texture.image = std::move(image);
-    texture.factor = has_colour ? NotNegative(*from.kd) : Colour(1.0);
-    if (from.map_kd.is_clamped) texture.wrap_u = texture.wrap_v = Wrap::kClamp;
-    material.base_colour = texture;
-  }
-  for (const auto& [statement, map] : from.other_maps) {
-    if (statement == "map_Ka" && map.file == from.map_kd.file) continue;  // says nothing more
-    files_.Warn(PlaceOf(from.library, map.line), fmt::format("{} is not read", statement));
-  }
-  material.emission = NotNegative(from.ke.value_or(Colour(0.0)));
-  const Colour specular = NotNegative(from.ks.value_or(Colour(0.0)));
-  const double illum = from.illum.value_or(2), shininess = from.ns.value_or(0);
-  if (illum >= 2 && shininess > 0) {
-    material.ks = std::max({specular.x, specular.y, specular.z});
-    material.shininess = shininess;
-  }
-  const double opacity = OpacityOf(from);
-  material.transmit = Colour(1 - opacity);
-  if (illum >= 3 && illum < 9) material.reflect = glm::min(specular, Colour(opacity));
-  if (opacity < 1) {
-    material.kd = opacity;
-    material.ior = std::clamp(from.ni.value_or(1), 1e-6, 1e6);
-  }
-  return material;
 }
 
 }  // namespace sheaf

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "sheaf/scene.h"
-#include "src/formats/image.h"
 #include "src/formats/scene_files.h"
 #include "src/formats/text_scanner.h"
 
@@ -21,9 +20,10 @@ namespace sheaf {
 struct MtlMap {
   std::size_t line = 0;   // 0: there is none
   std::string file;       // the rest of the line, which may hold blanks
-  glm::vec2 scale{1.0f};  // of coordinates with v up; the offset comes after it
-  glm::vec2 offset{0.0f};
+  glm::dvec2 scale{1.0};  // of coordinates with v up; the offset comes after it
+  glm::dvec2 offset{0.0};
   bool is_clamped = false;
+  double bump = 1;  // of bump maps: times their slopes
 };
 
 // What a library says of a material.
@@ -32,8 +32,7 @@ struct MtlMaterial {
   std::size_t line = 0;
   std::optional<Colour> kd, ks, ke;
   std::optional<double> ns, ni, d, tr, illum;
-  MtlMap map_kd;
-  std::map<std::string, MtlMap, std::less<>> other_maps;  // by statement; nothing here shows them
+  std::map<std::string, MtlMap, std::less<>> maps;  // by statement
 };
 
 // The libraries of one OBJ. Whatever is wrong with them is a warning.
@@ -51,9 +50,6 @@ class MtlLibraries {
   // The first material of this name, which may have a comment behind it.
   std::optional<std::size_t> Find(std::string_view name) const;
 
-  // What the material becomes, with its texture loaded: docs/formats.md, "OBJ and MTL".
-  Material ToMaterial(const MtlMaterial& from);
-
  private:
   bool ReadFile(std::string_view reference, std::string* failure);
   void ReadStatement(TextScanner& scanner, const std::string& path);
@@ -62,12 +58,9 @@ class MtlLibraries {
   std::optional<double> ReadNumber(TextScanner& scanner, std::string_view word,
                                    std::string_view key, const std::string& path);
   MtlMap ReadMap(TextScanner& scanner, const std::string& path);
-  double OpacityOf(const MtlMaterial& from);
-  std::shared_ptr<const Image> LoadImage(const MtlMaterial& from);
 
   const std::string& obj_;
   SceneFiles& files_;
-  ImageCache images_;
   std::vector<std::string> paths_;
   std::vector<MtlMaterial> materials_;
   std::map<std::string, std::size_t, std::less<>> index_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "src/core/strict_tan.h"
+#include "src/formats/losses.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 #include "src/formats/text_scanner.h"
@@ -22,8 +23,8 @@ constexpr std::size_t kMaxCorners = 1 << 20;
 
 class NffReader {
  public:
-  NffReader(std::string_view text, const std::string& name, int cone_sides)
-      : scanner_(text), name_(name), cone_sides_(cone_sides) {}
+  NffReader(std::string_view text, const std::string& name, SceneFiles& files)
+      : scanner_(text), name_(name), cone_sides_(files.options().cone_sides), losses_(files) {}
 
   Result<Scene> Read() {
     // Haines has no ambient light; a picture is black where no light reaches.
@@ -37,13 +38,20 @@ class NffReader {
     if (error_) return *error_;
     FinishLights();
     FinishMeshes();
-    if (scene_.objects.empty()) return SceneError(name_, "no object");
+    if (scene_.objects.empty()) {
+      return losses_.first() ? *losses_.first() : SceneError(name_, "no object");
+    }
     return std::move(scene_);
   }
 
  private:
   void Fail(std::string_view what) {
     if (!error_) error_ = SceneErrorAt(name_, scanner_.line(), what);
+  }
+
+  // What can be told apart from the rest of the text: the others stay.
+  void LeaveOut(std::size_t line, std::string_view kind, std::string_view why) {
+    losses_.LeaveOut(PlaceOf(name_, line), kind, why);
   }
 
   void ReadEntity(std::string_view word) {
@@ -127,11 +135,13 @@ class NffReader {
       }
     });
     if (error_) return;
-    if (!scene_.cameras.empty()) return Fail("a second view");
+    const std::size_t line_of_view = scanner_.line();
+    if (!scene_.cameras.empty()) return LeaveOut(line_of_view, "view left out", "a second view");
     const Vec3d towards = camera.look_at - camera.eye;
     if (glm::length(glm::cross(towards, camera.up)) <=
         1e-6 * glm::length(towards) * glm::length(camera.up)) {
-      return Fail("the view looks along its own up direction, or at its own eye");
+      return LeaveOut(line_of_view, "view left out",
+                      "it looks along its own up direction, or at its own eye");
     }
     camera.projection = Perspective{angle};
     scene_.cameras.push_back(camera);
@@ -218,6 +228,7 @@ class NffReader {
 
   void FinishMeshes() {
     for (auto& [key, mesh] : meshes_) {
+      if (mesh.triangles.empty()) continue;
       scene_.objects.push_back({"", std::move(mesh), key.first});
     }
   }
@@ -235,7 +246,8 @@ class NffReader {
 
   void ReadPolygon(Kind kind) {
     double count = 0;
-    if (!ReadNumber("number of vertices", &count, 3, kMaxCorners)) return;
+    const std::size_t line = scanner_.line();
+    if (!ReadNumber("number of vertices", &count, 0, kMaxCorners)) return;
     ExpectEnd();
     if (count != std::floor(count)) return Fail("number of vertices: expected a whole number");
     Mesh& mesh = MeshOf(kind);
@@ -251,7 +263,11 @@ class NffReader {
       ExpectEnd();
       polygon_.push_back(AddVertex(mesh, position));
     }
-    if (!error_) Triangulate(mesh.positions, polygon_, mesh.triangles);
+    if (error_) return;
+    if (polygon_.size() < 3) {
+      LeaveOut(line, "polygon left out", fmt::format("number of vertices: {}", polygon_.size()));
+    }
+    Triangulate(mesh.positions, polygon_, mesh.triangles);
   }
 
   // A frustum without caps, its normals those of the cone.
@@ -271,7 +287,9 @@ class NffReader {
     apex_radius = std::abs(apex_radius);
     const Vec3d axis = apex - base;
     const double height = glm::length(axis);
-    if (!(height > 0)) return Fail("the cone's base and apex are one point");
+    if (!(height > 0)) {
+      return LeaveOut(scanner_.line(), "cone left out", "its base and apex are one point");
+    }
     const Vec3d up = axis / height;
     const Vec3d side =
         glm::normalize(glm::cross(up, std::abs(up.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
@@ -296,6 +314,7 @@ class NffReader {
   TextScanner scanner_;
   const std::string& name_;
   int cone_sides_;
+  Losses losses_;
   Scene scene_;
   std::optional<Error> error_;
   std::map<std::array<double, 8>, std::uint32_t> material_of_;
@@ -306,12 +325,8 @@ class NffReader {
 
 }  // namespace
 
-Result<Scene> ParseNff(std::string_view text, const std::string& name, int cone_sides) {
-  return NffReader(text, name, cone_sides).Read();
-}
-
 Result<Scene> ParseNffScene(std::string_view text, const std::string& name, SceneFiles& files) {
-  return ParseNff(text, name, files.options().cone_sides);
+  return NffReader(text, name, files).Read();
 }
 
 }  // namespace sheaf

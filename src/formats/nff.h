@@ -13,11 +13,8 @@
 namespace sheaf {
 
 // Background, view (as the camera "nff" and the picture's size), lights, fills, cones and cylinders
-// (as `cone_sides` smooth quads without caps), spheres, polygons and patches. What docs/formats.md
-// says of materials and lights holds. Errors are kScene, `name:line: what`.
-Result<Scene> ParseNff(std::string_view text, const std::string& name, int cone_sides);
-
-// The same with the sides that the options ask for.
+// (as smooth quads without caps, as many sides as the options say), spheres, polygons and patches.
+// docs/formats.md says what materials and lights hold. Errors are kScene, `name:line: what`.
 Result<Scene> ParseNffScene(std::string_view text, const std::string& name, SceneFiles& files);
 
 }  // namespace sheaf

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "src/formats/mtl.h"
+#include "src/formats/mtl_materials.h"
 #include "src/formats/obj_statements.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
@@ -29,7 +30,7 @@ using Corner = ObjStatements::Corner;
 class ObjBuilder {
  public:
   ObjBuilder(ObjStatements& from, const std::string& name, SceneFiles& files, Losses& losses,
-             MtlLibraries& libraries)
+             const MtlLibraries& libraries)
       : from_(from),
         name_(name),
         files_(files),
@@ -53,7 +54,7 @@ class ObjBuilder {
       Object object;
       object.name = parts_of[group] == 1 ? from_.groups[group] : "";
       object.material = indices.at(material);
-      Mesh mesh = BuildMesh(runs, MapOf(material));
+      Mesh mesh = BuildMesh(runs);
       if (mesh.triangles.empty()) continue;
       object.shape = std::move(mesh);
       scene_.objects.push_back(std::move(object));
@@ -83,13 +84,14 @@ class ObjBuilder {
   // Those in use, in the order of the libraries, and the plain one behind them.
   template <typename Parts>
   std::map<int, std::uint32_t> AddMaterials(const Parts& parts) {
+    MtlMaterials made(files_);
     std::map<int, std::uint32_t> indices;
     for (const auto& [key, runs] : parts) indices[key.second] = 0;
     for (auto& [material, index] : indices) {
       if (material == kPlain) continue;
       index = static_cast<std::uint32_t>(scene_.materials.size());
       scene_.materials.push_back(
-          libraries_.ToMaterial(libraries_.materials()[static_cast<std::size_t>(material)]));
+          made.Make(libraries_.materials()[static_cast<std::size_t>(material)]));
     }
     if (const auto plain = indices.find(kPlain); plain != indices.end()) {
       plain->second = static_cast<std::uint32_t>(scene_.materials.size());
@@ -98,17 +100,12 @@ class ObjBuilder {
     return indices;
   }
 
-  MtlMap MapOf(int material) const {
-    if (material == kPlain) return {};
-    return libraries_.materials()[static_cast<std::size_t>(material)].map_kd;
-  }
-
   std::span<Corner> CornersOf(std::size_t face) {
     const std::size_t first = from_.faces[face].first_corner;
     return std::span(from_.corners).subspan(first, from_.faces[face + 1].first_corner - first);
   }
 
-  Mesh BuildMesh(const std::vector<const ObjStatements::Run*>& runs, const MtlMap& map) {
+  Mesh BuildMesh(const std::vector<const ObjStatements::Run*>& runs) {
     faces_.clear();
     has_uv_ = has_normals_ = false;
     for (const ObjStatements::Run* run : runs) {
@@ -121,7 +118,7 @@ class ObjBuilder {
     splitter_.Clear();
     for (const std::size_t face : faces_) {
       polygon_.clear();
-      for (const Corner& corner : CornersOf(face)) polygon_.push_back(VertexOf(corner, map, mesh));
+      for (const Corner& corner : CornersOf(face)) polygon_.push_back(VertexOf(corner, mesh));
       Triangulate(mesh.positions, polygon_, mesh.triangles);
     }
     const bool is_white = std::all_of(mesh.colours.begin(), mesh.colours.end(),
@@ -161,7 +158,7 @@ class ObjBuilder {
     return true;
   }
 
-  std::uint32_t VertexOf(const Corner& corner, const MtlMap& map, Mesh& mesh) {
+  std::uint32_t VertexOf(const Corner& corner, Mesh& mesh) {
     const auto position = static_cast<std::size_t>(corner.position);
     const auto [vertex, is_new] = splitter_.Find(position, corner);
     if (!is_new) return vertex;
@@ -174,11 +171,10 @@ class ObjBuilder {
     if (has_uv_) {
       glm::vec2 uv(0);
       if (corner.uv != kObjNone) {
-        uv = from_.uv[static_cast<std::size_t>(corner.uv)] * map.scale + map.offset;
+        uv = from_.uv[static_cast<std::size_t>(corner.uv)];
         uv = glm::vec2(uv.x, 1 - uv.y);
       }
-      constexpr auto kMost = static_cast<float>(kMaxCoordinate);
-      mesh.uv.push_back(glm::clamp(uv, -kMost, kMost));
+      mesh.uv.push_back(uv);
     }
     if (!from_.colours.empty()) {
       mesh.colours.push_back(position < from_.colours.size() ? from_.colours[position]
@@ -191,7 +187,7 @@ class ObjBuilder {
   const std::string& name_;
   SceneFiles& files_;
   Losses& losses_;
-  MtlLibraries& libraries_;
+  const MtlLibraries& libraries_;
   Scene scene_;
   bool has_uv_ = false, has_normals_ = false;  // of the mesh in work
   std::vector<std::size_t> faces_;             // likewise

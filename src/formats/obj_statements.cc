@@ -79,7 +79,6 @@ class StatementReader {
     for (std::string_view word; count < 6 && !(word = Argument()).empty(); ++count) {
       const auto number = ParseWord<double>(word);
       if (!number || !(std::abs(*number) <= kMaxCoordinate)) {
-        if (count >= at_least) break;
         const std::string shown = Printable(word, 40);
         why = number ? fmt::format("\"{}\" is not finite, or beyond 1e30", shown)
                      : fmt::format("expected a number, found \"{}\"", shown);
@@ -87,7 +86,10 @@ class StatementReader {
       }
       numbers_[count] = static_cast<float>(*number);
     }
-    if (count >= at_least) return count;
+    if (count >= at_least) {
+      if (!why.empty()) files_.Warn(Place(), "rest of the line left out", why);
+      return count;
+    }
     if (why.empty()) why = fmt::format("{} numbers of {}", count, at_least);
     losses_.LeaveOut(Place(), kind, why);
     std::fill(std::begin(numbers_), std::end(numbers_), kNan);
