@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build
   libhwy-dev libglm-dev libtbb-dev libbenchmark-dev doctest-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libpng-dev pkg-config
-  libtinygltf-dev libturbojpeg0-dev libopenexr-dev libassimp-dev
+  libtinygltf-dev libturbojpeg0-dev libopenexr-dev libassimp-dev assimp-testmodels
   "$@"
 )
 
