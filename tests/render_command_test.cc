@@ -146,6 +146,50 @@ TEST_CASE("stderr: plain lines, only the written files, or nothing") {
   CHECK(work.Render({"-o", work / "a.png", "-q", "--progress", "plain"}).err.empty());
 }
 
+TEST_CASE("a picture that shows nothing says why") {
+  const Workspace work;
+  const std::string path = work / "dark.json";
+  const auto err = [&](const std::string& eye, const std::string& rest) {
+    WriteText(path, R"({"materials": [{"name": "m", "base_colour": [0.5, 0.5, 0.5], "kd": 1}],
+        "objects": [{"name": "ball", "sphere": {"center": [0, 0, -5], "radius": 1}, "material": "m"}],
+        "cameras": [{"name": "c", "look_at": [0, 0, -9], "eye": )" +
+                        eye + "}]" + rest + "}");
+    const Outcome outcome =
+        work.Run({"render", path, "-o", work / "a.png", "--size", "32x24", "--progress", "none"});
+    CHECK(outcome.code == 0);
+    return outcome.err;
+  };
+  const auto light = [](const std::string& intensity) {
+    return R"(, "lights": [{"name": "l", "point": {"position": [0, 0, 0]}, "intensity": )" +
+           intensity + "}]";
+  };
+  CHECK(Contains(err("[0, 0, 0]", ""), "nothing lights the scene"));
+  CHECK(Contains(err("[0, 0, -5]", light("9")), "\"c\" lies inside object 0 \"ball\""));
+  CHECK(Contains(err("[0, 0, -7]", light("9")), "nothing is in view of the camera \"c\""));
+  CHECK(Contains(err("[0, 0, 0]", light("1e-9")), "the picture is black: its largest value is "));
+  CHECK(!Contains(err("[0, 0, 0]", light("9")), "warning"));
+  // A part may be empty, and -q says nothing.
+  err("[0, 0, -7]", light("9"));
+  CHECK(work.Run({"render", path, "-o", work / "a.png", "-q"}).err.empty());
+  CHECK(!Contains(work.Run({"render", path, "-o", work / "a.png", "--tile", "1/2"}).err, "warn"));
+}
+
+TEST_CASE("colours that look like bytes are asked about") {
+  const Workspace work;
+  const std::string path = work / "bytes.json";
+  const auto check = [&](const std::string& colour) {
+    WriteText(path, R"({"materials": [{"name": "m", "kd": 1, "base_colour": )" + colour + R"(}],
+        "objects": [{"sphere": {"center": [0, 0, -5], "radius": 1}, "material": "m"}],
+        "cameras": [{"name": "c", "eye": [0, 0, 0], "look_at": [0, 0, -1]}],
+        "lights": [{"name": "l", "point": {"position": [0, 0, 0]}, "intensity": 9}]})");
+    return work.Run({"check", path}).out;
+  };
+  CHECK(Contains(check("[255, 128, 0]"),
+                 "material \"m\": is the colour 255, 128, 0 meant in 0 to 255? 1 is white here"));
+  CHECK(!Contains(check("[1, 1, 0]"), "warning"));
+  CHECK(!Contains(check("[2.5, 0.5, 0]"), "warning"));
+}
+
 TEST_CASE("layers lie beside a picture, or in it") {
   const Workspace work;
   const std::vector<std::string> layers = {"--aov", "depth,normal,albedo,id,heat", "-q", "--size",

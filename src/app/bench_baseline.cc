@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,14 +10,9 @@
 
 #include "src/app/choose.h"
 #include "src/formats/printable.h"
-#include "src/lab/rank_statistics.h"
 
 namespace sheaf {
 namespace {
-
-constexpr double kSignificance = 0.01;    // p below which a difference is one
-constexpr double kSmallestChange = 0.01;  // of the median; less is no change, however sure
-constexpr double kNoise = 0.1;            // spread of a row above which nothing is said of it
 
 // kUsage where the two differ.
 template <typename T>
@@ -36,39 +29,8 @@ std::string SceneName(const BenchReport& report) {
   return InQuotes(std::filesystem::path(report.scene).filename().string());
 }
 
-struct Verdict {
-  std::string text;
-  bool is_slower = false;
-};
-
-Verdict JudgeSamples(const std::vector<double>& before, const std::vector<double>& now) {
-  const int m = static_cast<int>(before.size()), n = static_cast<int>(now.size());
-  if (SmallestP(m, n) > kSignificance) {
-    return {fmt::format("too few repetitions for a verdict ({} and {})", m, n)};
-  }
-  const double spread = std::max(RelativeSpread(before), RelativeSpread(now));
-  if (spread > kNoise) {
-    return {fmt::format("too noisy for a verdict (quartiles {:.0f} % apart)", 100 * spread)};
-  }
-  const double p = MannWhitneyP(before, now);
-  const double ratio = Median(now) / Median(before);
-  const bool differs = p < kSignificance && std::abs(ratio - 1) >= kSmallestChange;
-  const char* word = !differs ? "no change" : ratio > 1 ? "slower" : "faster";
-  return {fmt::format("{}, {:+.1f} % time, p = {:.2g}", word, 100 * (ratio - 1), p),
-          differs && ratio > 1};
-}
-
-Verdict JudgeRow(const BenchRow& row, const BenchReport& now, const BenchReport& before,
-                 Yardstick yardstick) {
-  const BenchRow* old_row = FindRow(before, row.target, row.threads);
-  if (old_row == nullptr) return {"not in the baseline"};
-  const BenchRow* scalar = FindRow(now, "scalar", row.threads);
-  const BenchRow* old_scalar = FindRow(before, "scalar", row.threads);
-  if (yardstick == Yardstick::kSeconds || scalar == nullptr || old_scalar == nullptr) {
-    return JudgeSamples(old_row->seconds, row.seconds);
-  }
-  if (row.target == "scalar") return {"the yardstick"};
-  return JudgeSamples(InScalars(*old_row, *old_scalar), InScalars(row, *scalar));
+TimedRun RunOf(const BenchRow& row, const BenchReport& report) {
+  return {row.seconds, row.calibration, row.threads, report.other_cores};
 }
 
 }  // namespace
@@ -98,14 +60,48 @@ Status CheckSameRays(const std::string& path, std::uint64_t rays, const BenchRep
   return Done{};
 }
 
+Status CheckSameMachine(const std::string& path, const Machine& now, const Machine& before) {
+  Status same = CheckSame(path, "processor", InQuotes(before.processor), InQuotes(now.processor));
+  if (same) same = CheckSame(path, "number of cores", before.cores, now.cores);
+  if (same) same = CheckSame(path, "affinity", InQuotes(before.affinity), InQuotes(now.affinity));
+  if (same) same = CheckSame(path, "compiler", InQuotes(before.compiler), InQuotes(now.compiler));
+  if (same) same = CheckSame(path, "flags", InQuotes(before.flags), InQuotes(now.flags));
+  if (same) {
+    same = CheckSame(path, "build type", InQuotes(before.build_type), InQuotes(now.build_type));
+  }
+  if (same) return same;
+  return Usage(same.error().message + " (--force judges all the same)");
+}
+
 ExitCode JudgeRows(const BenchReport& before, Yardstick yardstick, BenchReport& now) {
+  const int cores = UsableCores();
   ExitCode code = ExitCode::kOk;
   for (BenchRow& row : now.rows) {
-    Verdict verdict = JudgeRow(row, now, before, yardstick);
-    row.verdict = std::move(verdict.text);
-    if (verdict.is_slower) code = ExitCode::kDifferent;
+    const BenchRow* old_row = FindRow(before, row.target, row.threads);
+    if (old_row == nullptr) {
+      row.verdict = "not in the baseline";
+      continue;
+    }
+    Judgement judgement = JudgeTimes(RunOf(*old_row, before), RunOf(row, now), cores, yardstick);
+    row.verdict = std::move(judgement.text);
+    const bool is_open =
+        judgement.finding == Finding::kTooNoisy || judgement.finding == Finding::kTooFew;
+    if (judgement.finding == Finding::kSlower) code = ExitCode::kDifferent;
+    if (is_open && code == ExitCode::kOk) code = ExitCode::kUndecided;
   }
   return code;
+}
+
+std::vector<std::string> DescribeNoise(const BenchReport& report) {
+  std::vector<std::string> lines;
+  for (const BenchRow& row : report.rows) {
+    const std::string noise = DescribeNoise(RunOf(row, report), UsableCores());
+    if (!noise.empty()) {
+      lines.push_back(fmt::format("{}, {} thread{}: {}", row.target, row.threads,
+                                  row.threads == 1 ? "" : "s", noise));
+    }
+  }
+  return lines;
 }
 
 }  // namespace sheaf

@@ -8,6 +8,7 @@
 #include "sheaf/error.h"
 #include "src/app/bench_report.h"
 #include "src/app/exit_code.h"
+#include "src/lab/judge_times.h"
 
 namespace sheaf {
 
@@ -21,12 +22,15 @@ Status CheckSameFrame(const std::string& path, const BenchReport& now, const Ben
 // the same name: no target changes the number.
 Status CheckSameRays(const std::string& path, std::uint64_t rays, const BenchReport& before);
 
-// What is judged: ratios to the scalar baseline of the same run where both runs have it, because
-// the clock of a machine drifts from run to run; or seconds.
-enum class Yardstick { kScalar, kSeconds };
+// kUsage where it comes from another processor or build, or does not say from which.
+Status CheckSameMachine(const std::string& path, const Machine& now, const Machine& before);
 
-// Gives every row its verdict. kDifferent where one became slower.
+// Gives every row its verdict. kDifferent where one became slower, else kUndecided where too much
+// noise or too few repetitions left one without a finding.
 ExitCode JudgeRows(const BenchReport& before, Yardstick yardstick, BenchReport& now);
+
+// A line for each row that makes a bad baseline.
+std::vector<std::string> DescribeNoise(const BenchReport& report);
 
 }  // namespace sheaf
 

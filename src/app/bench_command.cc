@@ -1,5 +1,7 @@
 #include "src/app/bench_command.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
@@ -9,54 +11,15 @@
 #include "src/app/bench_report.h"
 #include "src/app/bench_request.h"
 #include "src/app/interrupt.h"
+#include "src/app/machine.h"
+#include "src/app/measure_bench.h"
+#include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/core/atomic_file.h"
 
 namespace sheaf {
 namespace {
-
-Result<RenderStats> RenderOnce(const Scene& scene, const Camera& camera, RenderOptions options,
-                               BenchRow& row) {
-  if (const Status chosen = ChooseTarget(row.target, options); !chosen) return chosen.error();
-  options.threads = row.threads;
-  row.lanes = static_cast<std::size_t>(options.target.lanes());
-  FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
-  const RowSink drop = [](const Film&) { return Status(Done{}); };
-  RenderStats stats;
-  const Status rendered = RenderRows(scene, camera, options, drop, &stats, watch.progress());
-  if (!rendered) return rendered.error();
-  // The watch wakes ten times a second; a frame may be shorter.
-  if (const Status going = CheckInterrupted(); !going) return going.error();
-  return stats;
-}
-
-// One frame of each row, which also tells its rays.
-Status WarmUp(const Scene& scene, const Camera& camera, const RenderOptions& options,
-              std::vector<BenchRow>& rows) {
-  for (BenchRow& row : rows) {
-    const Result<RenderStats> stats = RenderOnce(scene, camera, options, row);
-    if (!stats) return stats.error();
-    row.rays = stats.value().rays.traced();
-  }
-  return Done{};
-}
-
-// Every repetition takes each row once, beginning with another one: a drift of the clock meets all
-// alike.
-Status Measure(const Scene& scene, const Camera& camera, const RenderOptions& options,
-               int repetitions, std::vector<BenchRow>& rows) {
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      BenchRow& row = rows[(i + static_cast<std::size_t>(repetition + 1)) % rows.size()];
-      const Result<RenderStats> stats = RenderOnce(scene, camera, options, row);
-      if (!stats) return stats.error();
-      row.seconds.push_back(stats.value().wall_seconds);
-      for (int k = 0; k < kPhases; ++k) row.phases[k].push_back(stats.value().phase_seconds[k]);
-    }
-  }
-  return Done{};
-}
 
 // What to measure, in the order of the report: every target on every number of threads.
 Result<std::vector<BenchRow>> ListRows(const BenchRequest& request) {
@@ -91,15 +54,36 @@ Status WriteReport(const std::string& destination, const BenchReport& report) {
   return WriteStandardOutput(BenchText(report));
 }
 
-// kDifferent where a row became slower than in the baseline.
-Result<ExitCode> RunBench(const BenchRequest& request) {
-  const bool has_baseline = !request.baseline.empty();
-  const Result<BenchReport> baseline =
-      has_baseline ? ReadBaseline(request.baseline) : Result<BenchReport>(BenchReport());
-  if (!baseline) return baseline.error();
+// Tells of rows that make a bad baseline, before anyone judges by them.
+void WarnOfNoise(const BenchReport& report) {
+  for (const std::string& line : DescribeNoise(report)) {
+    PrintMessage(fmt::format("sheaf: warning: a bad baseline: {}", line));
+  }
+}
+
+// What is wrong with the command line and its files, before a scene is read.
+Result<BenchReport> ReadInputs(const BenchRequest& request) {
+  BenchReport baseline;
+  if (!request.baseline.empty()) {
+    Result<BenchReport> read = ReadBaseline(request.baseline);
+    if (!read) return read;
+    baseline = std::move(read).value();
+    if (!request.force) {
+      const Status same = CheckSameMachine(request.baseline, ThisMachine(), baseline.machine);
+      if (!same) return same.error();
+    }
+  }
   if (!request.json.empty() && request.json != "-") {
     if (const Status writable = CheckWritable(request.json); !writable) return writable.error();
   }
+  return baseline;
+}
+
+// kDifferent where a row became slower than in the baseline, kUndecided where one has no verdict.
+Result<ExitCode> RunBench(const BenchRequest& request) {
+  const bool has_baseline = !request.baseline.empty();
+  const Result<BenchReport> baseline = ReadInputs(request);
+  if (!baseline) return baseline.error();
   Result<std::vector<BenchRow>> rows = ListRows(request);
   if (!rows) return rows.error();
   const Result<OpenedScene> opened = OpenSceneAndFiles(request.scene, request.options);
@@ -114,29 +98,32 @@ Result<ExitCode> RunBench(const BenchRequest& request) {
   const Camera& camera = *chosen.value();
   RenderOptions options = FrameOptions(scene.settings, request.size, request.samples);
   options.timing = Timing::kOn;
-  BenchReport report{request.scene,  camera.name,     options.width,
-                     options.height, options.samples, std::move(rows).value()};
+  BenchReport report{request.scene,   camera.name,
+                     options.width,   options.height,
+                     options.samples, std::move(rows).value(),
+                     ThisMachine(),   0};
   if (has_baseline) {
     const Status same = CheckSameFrame(request.baseline, report, baseline.value());
     if (!same) return same.error();
   }
 
   CatchInterrupts();
-  const Status warm = WarmUp(scene, camera, options, report.rows);
+  const Status warm = WarmUp(scene, camera, options, report);
   if (!warm) return warm.error();
   if (has_baseline) {
     const Status same = CheckSameRays(request.baseline, report.rows.front().rays, baseline.value());
     if (!same) return same.error();
   }
-  const Status measured =
-      Measure(scene, camera, options, request.repetitions.value_or(9), report.rows);
+  const Status measured = Measure(scene, camera, options, request.repetitions.value_or(9),
+                                  ProgressStyleNamed(request.progress), report);
   if (!measured) return measured.error();
   ExitCode code = ExitCode::kOk;
   if (has_baseline) {
-    const Yardstick yardstick = request.absolute ? Yardstick::kSeconds : Yardstick::kScalar;
+    const Yardstick yardstick = request.absolute ? Yardstick::kSeconds : Yardstick::kCalibrated;
     code = JudgeRows(baseline.value(), yardstick, report);
   }
   if (const Status written = WriteReport(request.json, report); !written) return written.error();
+  if (!request.json.empty()) WarnOfNoise(report);
   return code;
 }
 

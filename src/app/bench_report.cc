@@ -8,7 +8,6 @@
 
 #include "sheaf/version.h"
 #include "src/app/json_text.h"
-#include "src/core/build_info.h"
 #include "src/formats/printable.h"
 #include "src/lab/rank_statistics.h"
 
@@ -85,7 +84,9 @@ Json RowJson(const BenchRow& row, const BenchRow* scalar) {
                  {"low", rate.low},
                  {"high", rate.high},
                  {"interval", rate.is_range ? "range" : "95 %"}}},
-               {"seconds", row.seconds}};
+               {"seconds", row.seconds},
+               {"calibration", row.calibration},
+               {"page_faults", row.page_faults}};
   if (scalar != nullptr) json["over_scalar"] = OverScalar(row, *scalar);
   if (row.target != "scalar") {
     for (int i = 0; i < kPhases; ++i) {
@@ -117,7 +118,21 @@ const char* ParseRow(const Json& json, BenchRow& row) {
     if (!seconds.is_number() || !(seconds.get<double>() > 0)) return "bad seconds";
     row.seconds.push_back(seconds.get<double>());
   }
+  const Json calibration = json.value("calibration", Json::array());
+  for (const Json& seconds : calibration) {
+    if (!seconds.is_number() || !(seconds.get<double>() > 0)) return "bad calibration";
+    row.calibration.push_back(seconds.get<double>());
+  }
   return nullptr;
+}
+
+Machine ParseMachine(const Json& json) {
+  const auto text = [&](const char* key) {
+    return HasText(json, key) ? json[key].get<std::string>() : std::string();
+  };
+  return {text("processor"), HasNumber(json, "cores") ? json["cores"].get<int>() : 0,
+          text("affinity"),  text("compiler"),
+          text("flags"),     text("build_type")};
 }
 
 }  // namespace
@@ -140,10 +155,22 @@ std::vector<double> InScalars(const BenchRow& row, const BenchRow& scalar) {
 std::string BenchText(const BenchReport& report) { return RowsText(report) + PhasesText(report); }
 
 std::string BenchJson(const BenchReport& report) {
-  Json json = {{"sheaf", kVersion},          {"scene", report.scene},
-               {"camera", report.camera},    {"width", report.width},
-               {"height", report.height},    {"samples", report.samples},
-               {"compiler", CompilerName()}, {"build_type", BuildTypeName()}};
+  const Machine& machine = report.machine;
+  Json json = {{"sheaf", kVersion},
+               {"date", Today()},
+               {"scene", report.scene},
+               {"camera", report.camera},
+               {"width", report.width},
+               {"height", report.height},
+               {"samples", report.samples},
+               {"processor", machine.processor},
+               {"cores", machine.cores},
+               {"affinity", machine.affinity},
+               {"compiler", machine.compiler},
+               {"flags", machine.flags},
+               {"build_type", machine.build_type},
+               {"load", LoadAverage()},
+               {"other_cores", report.other_cores}};
   for (const BenchRow& row : report.rows) {
     json["rows"].push_back(RowJson(row, FindRow(report, "scalar", row.threads)));
   }
@@ -163,9 +190,15 @@ Result<BenchReport> ParseBenchJson(const std::string& path, const std::string& t
     if (!HasNumber(json, key)) return malformed("no size or samples");
   }
   if (!json.contains("rows") || !json["rows"].is_array()) return malformed("no rows");
-  BenchReport report{json["scene"].get<std::string>(), json["camera"].get<std::string>(),
-                     json["width"].get<int>(),         json["height"].get<int>(),
-                     json["samples"].get<int>(),       {}};
+  BenchReport report;
+  report.scene = json["scene"].get<std::string>();
+  report.camera = json["camera"].get<std::string>();
+  report.width = json["width"].get<int>();
+  report.height = json["height"].get<int>();
+  report.samples = json["samples"].get<int>();
+  report.machine = ParseMachine(json);
+  const bool tells = json.contains("other_cores") && json["other_cores"].is_number();
+  report.other_cores = tells ? json["other_cores"].get<double>() : 0.0;
   for (const Json& row : json["rows"]) {
     if (const char* wrong = ParseRow(row, report.rows.emplace_back())) return malformed(wrong);
   }

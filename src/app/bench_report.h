@@ -9,6 +9,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/render.h"
+#include "src/app/machine.h"
 
 namespace sheaf {
 
@@ -21,7 +22,9 @@ struct BenchRow {
   std::size_t lanes = 1;
   std::uint64_t rays = 0;
   std::vector<double> seconds;          // by repetition, not empty once measured
-  std::vector<double> phases[kPhases];  // the same; summed over threads
+  std::vector<double> calibration;      // the same: CalibrationSeconds around it; may be empty
+  std::vector<double> phases[kPhases];  // by repetition; summed over threads
+  long page_faults = 0;                 // of all repetitions
   std::string verdict;                  // against the baseline; empty without one
 };
 
@@ -29,6 +32,8 @@ struct BenchReport {
   std::string scene, camera;
   int width = 0, height = 0, samples = 0;
   std::vector<BenchRow> rows;
+  Machine machine;         // empty where a file does not tell
+  double other_cores = 0;  // that other processes kept busy meanwhile
 };
 
 // Null where there is none.

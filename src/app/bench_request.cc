@@ -17,7 +17,10 @@ void AddBenchOptions(CLI::App& app, BenchRequest& request) {
   AddPath(app, "--baseline", request.baseline, "FILE",
           "A file that --json wrote, to judge against");
   AddFlag(app, "--absolute", request.absolute,
-          "Judge seconds, not ratios to the scalar baseline of the same run");
+          "Judge seconds alone, not also in times of the machine's own speed");
+  AddFlag(app, "--force", request.force, "Judge against a run on another processor or build too");
+  AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
+            "What stderr shows meanwhile");
   AddJson(app, request.json, "The result as JSON to stdout, or into FILE");
 }
 

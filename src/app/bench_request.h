@@ -26,7 +26,8 @@ struct BenchRequest {
   std::vector<std::string> targets = {"all"};
   std::vector<int> threads = {1};
   std::string baseline;  // empty: none
-  bool absolute = false;
+  bool absolute = false, force = false;
+  std::string progress = "auto";
   std::string json;  // empty: a table; "-": stdout; else a file, besides the table
 };
 

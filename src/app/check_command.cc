@@ -9,6 +9,7 @@
 #include "src/app/open_scene.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
+#include "src/app/suspect_scene.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -82,6 +83,10 @@ Result<ExitCode> RunCheck(const CheckRequest& request) {
       continue;
     }
     Json json = CheckJson(path, opened.value());
+    // What a picture would look like is no loss, so that --strict does not ask for it.
+    for (const std::string& line : SuspectScene(opened.value().scene)) {
+      json["warnings"].push_back(fmt::format("{}: {}", PrintablePath(path), line));
+    }
     const Status strict = CheckStrict(path, opened.value().warnings, request.options);
     if (!strict) json["error"] = strict.error().message;
     all.push_back(json);

@@ -4,6 +4,7 @@
 #include "src/app/check_command.h"
 #include "src/app/compare_command.h"
 #include "src/app/convert_command.h"
+#include "src/app/diff_command.h"
 #include "src/app/info_command.h"
 #include "src/app/merge_command.h"
 #include "src/app/pareto_command.h"
@@ -31,6 +32,8 @@ constexpr CommandEntry kCommands[] = {
      "  sheaf compare scene.json --targets all --threads 1,2\n"
      "  sheaf compare expected.png found.png --fail psnr=40\n",
      &CompareCommand},
+    {"diff", "Show where two pictures differ, as a picture",
+     "  sheaf diff expected.png found.png -o where.png\n", &DiffCommand},
     {"bench", "Time a scene on every SIMD target",
      "  sheaf bench scene.json --baseline before.json\n", &BenchCommand},
     {"pareto", "Chart run time against error over a scene's settings",

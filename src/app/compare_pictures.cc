@@ -6,12 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "src/app/display_picture.h"
 #include "src/app/json_text.h"
 #include "src/app/standard_output.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
 #include "src/lab/picture_metrics.h"
-#include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
@@ -37,24 +37,6 @@ const Metric* FindMetric(const std::string& name) {
     if (name == metric.name) return &metric;
   }
   return nullptr;
-}
-
-// The picture as a display gets it. A float picture holds light, which is encoded first.
-Result<Film> ReadDisplayValues(const std::string& path, Transfer transfer) {
-  Result<ReadPictureResult> read = ReadPicture(path);
-  if (!read) return read.error();
-  Film film = std::move(read.value().film);
-  if (transfer == Transfer::kSrgb && !read.value().is_display) {
-    for (float& value : film.rgb) {
-      value = static_cast<float>(SrgbEncode(static_cast<double>(value)));
-    }
-  }
-  return film;
-}
-
-// A picture of bytes ends at 0 and 1. A float picture that is compared with it is clamped likewise.
-void ClampToDisplay(Film& film) {
-  for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
 }
 
 bool IsFinite(const Film& film) {
@@ -86,6 +68,26 @@ std::vector<std::string> BrokenLimits(const Comparison& comparison,
 // To two digits; never -0.
 double Decibels(double psnr) { return std::round(100 * psnr) / 100 + 0.0; }
 
+// Over the pictures so far.
+class RunningMeans {
+ public:
+  void Add(const PictureMetrics& metrics) {
+    ++count_;
+    rmse_ += metrics.rmse;
+    flip_ += metrics.mean_flip;
+  }
+  // From the second picture on.
+  std::string Text() const {
+    if (count_ < 2) return "";
+    return fmt::format(" (mean so far: rmse {:.6g}, flip {:.6g})", rmse_ / count_, flip_ / count_);
+  }
+  Json ToJson() const { return {{"rmse", rmse_ / count_}, {"flip", flip_ / count_}}; }
+
+ private:
+  int count_ = 0;
+  double rmse_ = 0, flip_ = 0;
+};
+
 }  // namespace
 
 bool IsMetric(const std::string& name) { return FindMetric(name) != nullptr; }
@@ -102,7 +104,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
   std::optional<Film> shown_reference;  // clamped, where a picture asks for that
   Json json = {{"reference", request.inputs.front()}, {"pictures", Json::array()}};
   ExitCode code = ExitCode::kOk;
-  std::string text;
+  RunningMeans means;
   for (std::size_t i = 1; i < request.inputs.size(); ++i) {
     const std::string& path = request.inputs[i];
     Result<Film> test = ReadDisplayValues(path, transfer);
@@ -116,10 +118,8 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     if (is_mixed) ClampToDisplay(test.value());
     const Film& a = is_mixed ? *shown_reference : reference.value();
     const Film& b = test.value();
-    if (a.width != b.width || a.height != b.height) {
-      return Usage(fmt::format("{}: {}x{} pixels, and {} has {}x{}", PrintablePath(path), b.width,
-                               b.height, PrintablePath(request.inputs.front()), a.width, a.height));
-    }
+    const Status same = CheckSameSize(path, b, request.inputs.front(), a);
+    if (!same) return same.error();
     const PictureMetrics metrics = MeasurePictures(a, b, transfer);
     const std::vector<std::string> broken = BrokenLimits({metrics, finite}, request.limits);
     Json entry = {{"path", path}, {"identical", metrics.largest == 0}, {"finite", finite}};
@@ -131,13 +131,18 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
       code = ExitCode::kDifferent;
     }
     json["pictures"].push_back(entry);
-    text += fmt::format(
+    means.Add(metrics);
+    if (request.json) continue;
+    const Status written = WriteStandardOutput(fmt::format(
         "{}: rmse {:.6g}, psnr {:.2f} dB, largest error {:.6g}, {} pixels over 1/255, flip "
-        "{:.6g}{}{}\n",
+        "{:.6g}{}{}{}\n",
         PrintablePath(path), metrics.rmse, Decibels(metrics.psnr), metrics.largest, metrics.over,
-        metrics.mean_flip, broken.empty() ? "" : "; ", fmt::join(broken, ", "));
+        metrics.mean_flip, means.Text(), broken.empty() ? "" : "; ", fmt::join(broken, ", ")));
+    if (!written) return written.error();
   }
-  const Status written = WriteStandardOutput(request.json ? JsonText(json) : text);
+  if (!request.json) return code;
+  json["mean"] = means.ToJson();
+  const Status written = WriteStandardOutput(JsonText(json));
   if (!written) return written.error();
   return code;
 }

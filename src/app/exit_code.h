@@ -13,6 +13,7 @@ enum class ExitCode : int {
   kUsage = 2,
   kScene = 3,
   kInputOutput = 4,
+  kUndecided = 5,      // a measurement was too noisy or too short for a verdict
   kInterrupted = 130,  // SIGINT, as shells count it
   kTerminated = 143,   // SIGTERM
 };

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "sheaf/version.h"
 #include "src/app/add_options.h"
 #include "src/app/json_text.h"
+#include "src/app/machine.h"
 #include "src/app/open_scene.h"
 #include "src/app/scene_summary.h"
 #include "src/app/standard_output.h"
@@ -31,16 +31,6 @@ struct InfoRequest {
   std::string scene;  // empty: none
   bool json = false;
 };
-
-// Linux names the processor here ("model name" on x86); other systems just say less.
-std::string ProcessorModel() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown processor";
-}
 
 Json VectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 

@@ -30,7 +30,7 @@ namespace {
 
 constexpr char kExitCodes[] = R"(
 Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
-130 interrupted, 143 terminated.)";
+5 no verdict, 130 interrupted, 143 terminated.)";
 
 std::string Footer() {
   std::string text = "\nExamples:\n";

@@ -71,6 +71,11 @@ ProgressStyle AutomaticProgressStyle() {
   return draws && isatty(STDERR_FILENO) ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
 
+ProgressStyle ProgressStyleNamed(const std::string& word) {
+  if (word == "none") return ProgressStyle::kNone;
+  return word == "plain" ? ProgressStyle::kPlain : AutomaticProgressStyle();
+}
+
 FrameWatch::FrameWatch(ProgressStyle style, std::string label, const RenderOptions& options,
                        std::uint64_t pixels)
     : style_(style), label_(std::move(label)), pixels_(pixels) {
@@ -150,6 +155,32 @@ void FrameWatch::Finish(const RenderStats& stats) {
   PrintError(fmt::format("{}: {:.2f} million rays in {:.3f} s, {:.1f} million rays/s, {}, {} {}\n",
                          label_, rays * 1e-6, seconds, seconds > 0.0 ? rays / seconds * 1e-6 : 0.0,
                          stats.target, stats.threads, stats.threads == 1 ? "thread" : "threads"));
+}
+
+StepWatch::StepWatch(ProgressStyle style, std::string label, std::uint64_t steps)
+    : style_(style), label_(std::move(label)), steps_(steps), start_(Clock::now()) {}
+
+StepWatch::~StepWatch() {
+  if (style_ == ProgressStyle::kBar && done_ > 0) PrintError("\r\x1b[K");
+}
+
+void StepWatch::Advance() {
+  ++done_;
+  if (style_ == ProgressStyle::kNone) return;
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  const double left =
+      seconds * static_cast<double>(steps_ - std::min(done_, steps_)) / static_cast<double>(done_);
+  const std::string text =
+      fmt::format("{}: {} of {}, {} left", label_, done_, steps_, Duration(left));
+  if (style_ == ProgressStyle::kBar) {
+    PrintError("\r" + text.substr(0, TerminalColumns() - 1) + "\x1b[K");
+    return;
+  }
+  const std::uint64_t tenth = 10 * done_ / std::max<std::uint64_t>(steps_, 1);
+  if (tenth <= last_line_tenth_ || tenth >= 10 || seconds < last_line_seconds_ + 2.0) return;
+  PrintError(text + "\n");
+  last_line_tenth_ = tenth;
+  last_line_seconds_ = seconds;
 }
 
 }  // namespace sheaf

@@ -3,6 +3,7 @@
 #ifndef SHEAF_APP_PROGRESS_H_
 #define SHEAF_APP_PROGRESS_H_
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -18,6 +19,9 @@ enum class ProgressStyle {
   kPlain,  // a line at the start, one every tenth (at most one a second), one at the end
   kNone,
 };
+
+// The style of a word of --progress: "auto", "plain" or "none".
+ProgressStyle ProgressStyleNamed(const std::string& word);
 
 // kBar where stderr is a terminal that can move its cursor, else kPlain.
 ProgressStyle AutomaticProgressStyle();
@@ -71,6 +75,27 @@ class FrameWatch {
   std::uint64_t last_line_tenth_ = 0;
 
   std::thread thread_;  // last: it starts when everything else is there
+};
+
+// Tells how far work of many steps has come, and how long the rest takes at the pace so far. In
+// kPlain a line a tenth, at most one every two seconds: short work says nothing.
+class StepWatch {
+ public:
+  StepWatch(ProgressStyle style, std::string label, std::uint64_t steps);
+  StepWatch(const StepWatch&) = delete;
+  StepWatch& operator=(const StepWatch&) = delete;
+  ~StepWatch();  // the bar goes away
+
+  // A step is done.
+  void Advance();
+
+ private:
+  const ProgressStyle style_;
+  const std::string label_;
+  const std::uint64_t steps_;
+  const std::chrono::steady_clock::time_point start_;
+  std::uint64_t done_ = 0, last_line_tenth_ = 0;
+  double last_line_seconds_ = 0.0;
 };
 
 }  // namespace sheaf

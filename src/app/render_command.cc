@@ -8,6 +8,7 @@
 
 #include "sheaf/scene.h"
 #include "src/app/choose.h"
+#include "src/app/dark_picture.h"
 #include "src/app/frame_writer.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
@@ -17,6 +18,7 @@
 #include "src/app/render_request.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
+#include "src/app/suspect_scene.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
@@ -143,8 +145,7 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
 }
 
 ProgressStyle ChooseProgressStyle(const RenderRequest& request) {
-  if (request.quiet || request.progress == "none") return ProgressStyle::kNone;
-  return request.progress == "plain" ? ProgressStyle::kPlain : AutomaticProgressStyle();
+  return ProgressStyleNamed(request.quiet ? "none" : request.progress);
 }
 
 PixelSize PictureSize(const RenderOptions& options) {
@@ -156,17 +157,20 @@ std::uint64_t PixelCount(const PixelSize& size) {
   return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
-Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_path,
+Result<FrameRecord> RenderFrame(const RenderRequest& request, const Scene& scene,
                                 const Frame& frame, const RenderOptions& options,
-                                std::optional<int> bits, ProgressStyle style, std::string label) {
+                                ProgressStyle style, std::string label) {
   const PixelSize size = PictureSize(options);
   FrameRecord record{frame.camera->name, frame.path, options, {}};
   // Before the first ray: what cannot be written costs no rendering.
-  Result<FrameWriter> writer = FrameWriter::Create(scene, frame, options, bits, scene_path);
+  Result<FrameWriter> writer =
+      FrameWriter::Create(scene, frame, options, request.bits, request.scene);
   if (!writer) return writer.error();
   FrameWatch watch(style, std::move(label), options, PixelCount(size));
   HeatPicture heat(options);
+  DarkPicture dark(scene.settings.transfer);
   const RowSink write = [&](const Film& rows) {
+    dark.AddRows(rows);
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
     return writer.value().WriteRows(rows);
   };
@@ -180,6 +184,11 @@ Result<FrameRecord> RenderFrame(const Scene& scene, const std::string& scene_pat
   if (!rendered) return rendered.error();
   watch.Finish(record.stats);
   if (const Status written = writer.value().Finish(); !written) return written.error();
+  // A part of a picture may well be empty.
+  if (!options.crop && !request.quiet) {
+    const Result<std::string> reason = dark.Explain(scene, *frame.camera, options);
+    if (reason && !reason.value().empty()) PrintMessage("sheaf: warning: " + reason.value());
+  }
   for (const auto& [layer, path] : frame.beside) {
     if (layer != Layer::kHeat) continue;
     if (const Status written = heat.Write(path); !written) return written.error();
@@ -206,6 +215,11 @@ Status RunRender(const RenderRequest& given) {
   }();
   if (!opened) return opened.error();
   const Scene& scene = opened.value().scene;
+  for (const std::string& line : SuspectScene(scene)) {
+    if (!request.quiet) {
+      PrintMessage(fmt::format("sheaf: warning: {}: {}", request.scene, line));
+    }
+  }
   const Result<RenderOptions> options = MergeOptions(request, scene.settings);
   if (!options) return options.error();
   const Result<std::vector<Frame>> frames = PlanFrames(request, scene);
@@ -219,8 +233,7 @@ Status RunRender(const RenderRequest& given) {
   for (const Frame& frame : frames.value()) {
     std::string label = Printable(frame.camera->name);
     if (count > 1) label += fmt::format(" {}/{}", records.size() + 1, count);
-    Result<FrameRecord> record =
-        RenderFrame(scene, request.scene, frame, options.value(), request.bits, style, label);
+    Result<FrameRecord> record = RenderFrame(request, scene, frame, options.value(), style, label);
     if (!record) return record.error();
     std::vector<std::string> paths = {frame.path};
     for (const auto& [layer, path] : frame.beside) paths.push_back(path);

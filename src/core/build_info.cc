@@ -19,6 +19,7 @@ constexpr OptionalPart kOptionalParts[] = {
 
 const char* LibraryVersion() { return kVersion; }
 const char* CompilerName() { return SHEAF_COMPILER; }
+const char* CompilerFlags() { return SHEAF_COMPILER_FLAGS; }
 const char* BuildTypeName() { return SHEAF_BUILD_TYPE; }
 std::span<const OptionalPart> OptionalParts() { return kOptionalParts; }
 

@@ -7,6 +7,7 @@
 namespace sheaf {
 
 const char* CompilerName();   // with its version
+const char* CompilerFlags();  // of CMake's variables, e.g. "-O3 -DNDEBUG"
 const char* BuildTypeName();  // CMake's, e.g. "Release"
 
 // A part that a build may lack.

@@ -250,21 +250,29 @@ Features FeaturesOf(const Image& opponent, double pixels_per_degree) {
 
 }  // namespace
 
-double MeanFlip(const Film& reference, const Film& test, double pixels_per_degree) {
+std::vector<double> FlipErrors(const Film& reference, const Film& test, double pixels_per_degree) {
   const Image a = OpponentImage(reference), b = OpponentImage(test);
   const std::vector<Triple> colours_a = SeenColours(a, pixels_per_degree);
   const std::vector<Triple> colours_b = SeenColours(b, pixels_per_degree);
   const Features features_a = FeaturesOf(a, pixels_per_degree);
   const Features features_b = FeaturesOf(b, pixels_per_degree);
-  double sum = 0;
+  std::vector<double> errors;
+  errors.reserve(colours_a.size());
   for (std::size_t i = 0; i < colours_a.size(); ++i) {
     const double edge = std::abs(features_a.edges[i] - features_b.edges[i]);
     const double point = std::abs(features_a.points[i] - features_b.points[i]);
     // Raises the error of the colours where a feature is in one picture only.
     const double feature_error = std::sqrt(std::max(edge, point) / std::numbers::sqrt2);
-    sum += std::pow(ColourError(colours_a[i], colours_b[i]), 1 - feature_error);
+    errors.push_back(std::pow(ColourError(colours_a[i], colours_b[i]), 1 - feature_error));
   }
-  return sum / static_cast<double>(colours_a.size());
+  return errors;
+}
+
+double MeanFlip(const Film& reference, const Film& test, double pixels_per_degree) {
+  double sum = 0;
+  const std::vector<double> errors = FlipErrors(reference, test, pixels_per_degree);
+  for (const double error : errors) sum += error;
+  return sum / static_cast<double>(errors.size());
 }
 
 }  // namespace sheaf

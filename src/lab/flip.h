@@ -2,6 +2,8 @@
 #ifndef SHEAF_LAB_FLIP_H_
 #define SHEAF_LAB_FLIP_H_
 
+#include <vector>
+
 #include "sheaf/film.h"
 
 namespace sheaf {
@@ -10,10 +12,14 @@ namespace sheaf {
 // 3840 pixels wide.
 inline constexpr double kFlipPixelsPerDegree = 67.0206;
 
-// The mean FLIP error of all pixels, in [0, 1]: 0 for equal pictures. This is the LDR variant of
-// Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator
-// for Alternating Images" (HPG 2020). Films hold linear light; values are clamped to [0, 1], and
-// NaN counts as 0. Both films have the same size and at least one pixel.
+// The FLIP error of each pixel, row by row from the top, in [0, 1]: 0 for equal pictures. This is
+// the LDR variant of Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild, "FLIP: A
+// Difference Evaluator for Alternating Images" (HPG 2020). Films hold linear light; values are
+// clamped to [0, 1], and NaN counts as 0. Both films have the same size and at least one pixel.
+std::vector<double> FlipErrors(const Film& reference, const Film& test,
+                               double pixels_per_degree = kFlipPixelsPerDegree);
+
+// Their mean.
 double MeanFlip(const Film& reference, const Film& test,
                 double pixels_per_degree = kFlipPixelsPerDegree);
 

@@ -106,6 +106,30 @@ double MannWhitneyP(const std::vector<double>& a, const std::vector<double>& b) 
   return std::min(1.0, 2 * tail);
 }
 
+RatioEstimate EstimateRatio(const std::vector<double>& before, const std::vector<double>& after) {
+  std::vector<double> ratios;
+  for (const double x : before) {
+    for (const double y : after) ratios.push_back(y / x);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  const std::size_t m = before.size(), n = after.size();
+  const auto tail = [&](double u) {
+    return m * n <= kExactPairs ? ExactTail(m, n, u) : ApproximateTail(m, n, u, 0);
+  };
+  // The tail grows with u: the last one that is small enough, by bisection.
+  std::size_t low = 0, high = m * n / 2;  // ratios left out on either side
+  while (low < high) {
+    const std::size_t middle = (low + high + 1) / 2;
+    if (2 * tail(static_cast<double>(middle - 1)) <= kRatioSignificance) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  const std::size_t left_out = low > 0 ? low - 1 : 0;
+  return {Median(ratios), {ratios[left_out], ratios[ratios.size() - 1 - left_out]}};
+}
+
 double SmallestP(int a, int b) {
   double orders = 1;
   for (int i = 1; i <= a; ++i) orders *= static_cast<double>(b + i) / i;
