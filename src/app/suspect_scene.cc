@@ -38,7 +38,10 @@ bool IsLit(const Scene& scene, const std::set<std::uint32_t>& used) {
   for (const Light& light : scene.lights) {
     if (light.intensity * Largest(light.colour) > 0) return true;
   }
-  const Colour ambient = scene.settings.ambient.value_or(scene.settings.background);
+  // Surroundings are taken to shine: a black picture all around is found by the frame itself.
+  const Settings& settings = scene.settings;
+  const Colour ambient =
+      settings.ambient.value_or(settings.environment ? Colour(1.0) : settings.background);
   return std::any_of(used.begin(), used.end(), [&](std::uint32_t index) {
     const Material& material = scene.materials[index];
     return Largest(material.emission) > 0 ||
