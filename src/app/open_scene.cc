@@ -94,7 +94,7 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings),
                      std::move(result.value().files)};
   if (const Status aimed = Aim(options, &opened.scene); !aimed) return aimed.error();
-  if (result.value().key_light == KeyLight::kAdded) AimKeyLight(&opened.scene);
+  if (result.value().key_light == KeyLight::kAdded) AimStudio(&opened.scene);
   return opened;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -17,14 +18,32 @@
 namespace sheaf {
 namespace {
 
-void AddKeyLight(Scene* scene) {
-  Light light;
-  light.name = "key";
-  light.intensity = 0.8;
-  scene->lights.push_back(light);
-  AimKeyLight(scene);
+// A light of a studio, and where it stands beside the camera: right, up and behind it.
+struct StudioLight {
+  const char* name;
+  double intensity;
+  Vec3d place;
+  bool casts_shadows;
+};
+// The first falls over the left shoulder; the second lifts its shadows; the third draws the upper
+// edge from behind.
+constexpr StudioLight kStudio[] = {{"key", 0.75, {-0.6, 0.9, 1.0}, true},
+                                   {"fill", 0.15, {1.0, 0.2, 0.8}, false},
+                                   {"rim", 0.3, {0.4, 0.8, -1.0}, true}};
+
+void AddStudio(Scene* scene) {
+  for (const StudioLight& studio : kStudio) {
+    Light light;
+    light.name = studio.name;
+    light.intensity = studio.intensity;
+    light.casts_shadows = studio.casts_shadows;
+    scene->lights.push_back(light);
+  }
+  AimStudio(scene);
   scene->settings.ambient = Colour(1.0);
   scene->settings.background = Colour(0.8, 0.84, 0.9);
+  scene->settings.environment =
+      Gradient{{0.42, 0.5, 0.62}, scene->settings.background, {0.5, 0.48, 0.46}};
 }
 
 KeyLight Complete(Scene* scene) {
@@ -33,7 +52,7 @@ KeyLight Complete(Scene* scene) {
     scene->cameras.push_back(CameraThatFrames(bounds, {0, 1, 0}));
   }
   if (!scene->lights.empty()) return KeyLight::kAbsent;
-  AddKeyLight(scene);
+  AddStudio(scene);
   return KeyLight::kAdded;
 }
 
@@ -94,12 +113,15 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
   }
 }
 
-void AimKeyLight(Scene* scene) {
+void AimStudio(Scene* scene) {
   const Camera& camera = scene->cameras.front();
   const Vec3d ahead = glm::normalize(camera.look_at - camera.eye);
   const Vec3d right = glm::normalize(glm::cross(ahead, camera.up));
   const Vec3d up = glm::cross(right, ahead);
-  scene->lights.front().source = DirectionalLight{ahead + 0.6 * right - 0.9 * up};
+  for (std::size_t i = 0; i < std::size(kStudio); ++i) {
+    const Vec3d& place = kStudio[i].place;
+    scene->lights[i].source = DirectionalLight{place.z * ahead - place.x * right - place.y * up};
+  }
 }
 
 Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up) {

@@ -60,21 +60,22 @@ struct ReadOptions {
   int cone_sides = 32;  // of the triangles that stand for NFF's cones, [3, kMaxConeSides]
 };
 
-// Whether a light was put into a scene that had none.
+// Whether lights were put into a scene that had none: key, fill and rim.
 enum class KeyLight { kAbsent, kAdded };
 
 struct ReadSceneResult {
   Scene scene;
-  KeyLight key_light = KeyLight::kAbsent;  // kAdded: it is the scene's first light
+  KeyLight key_light = KeyLight::kAbsent;  // kAdded: the scene's first three lights
   // What was left out or replaced: a line for each kind, with its first place and its number.
   std::vector<std::string> warnings;
   std::vector<std::string> files;  // that the scene was read from, itself first
 };
 
 // Reads a scene that can be rendered. A model without a camera gets one that frames it; one without
-// a light gets a key light, white ambient light and a bright background. A file of unknown ending
-// is read as scene JSON if it begins like one. kInputOutput where a file cannot be read, kScene
-// where one is malformed, with a message like `file:line: /json/path: what; did you mean "..."?`.
+// a light gets a key, a fill and a rim light, white ambient light and a soft gradient around it. A
+// file of unknown ending is read as scene JSON if it begins like one. kInputOutput where a file
+// cannot be read, kScene where one is malformed, with a message like
+// `file:line: /json/path: what; did you mean "..."?`.
 SHEAF_API Result<ReadSceneResult> ReadScene(const std::string& path,
                                             const ReadOptions& options = {});
 
