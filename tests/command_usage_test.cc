@@ -266,7 +266,8 @@ TEST_CASE("check lists bad scenes too, and the first decides the code") {
 
   WriteText(work / "e\x1b[31m.obj", kTriangle);
   const Outcome odd = work.Run({"check", work / "e\x1b[31m.obj"});
-  CHECK(Contains(odd.out, "e\\u001B[31m.obj: sound: 1 object, 0 spheres, 1 triangle, 1 light, 1 "));
+  CHECK(
+      Contains(odd.out, "e\\u001B[31m.obj: sound: 1 object, 0 spheres, 1 triangle, 3 lights, 1 "));
 }
 
 TEST_CASE("what is lost is said once a kind, and is an error with --strict") {

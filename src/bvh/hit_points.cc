@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <type_traits>
 
@@ -30,7 +31,8 @@ class HitBlock {
     std::size_t number = 0, id = 0;
     ForEachField(surfaces_, [&]<typename T>(T*& field) {
       if constexpr (std::is_same_v<T, Real>) {
-        field = numbers_[number++];
+        // The terms that textures vary come last, and are for materials alone.
+        field = number < std::size(numbers_) ? numbers_[number++] : nullptr;
       } else {
         field = ids_[id++];
       }

@@ -24,8 +24,9 @@ Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files);
 inline constexpr double kModelAmbient = 0.25;
 Material PlainMaterial();
 
-// Turns the lights that were added to a scene without any, its first three, by the first camera: the
-// key light over its left shoulder, a fill light from the right, a rim light from behind the model.
+// Turns the lights that were added to a scene without any, its first three, by the first camera:
+// the key light over its left shoulder, a fill light from the right, a rim light from behind the
+// model.
 void AimStudio(Scene* scene);
 
 // The camera "default": looks at the middle of the box from the front, a little from the right and
