@@ -10,6 +10,56 @@
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
+// The surface that smooth normals stand for, where `is_smooth`: Curve of src/scalar/triangle.h,
+// from the positions and faces at `i`. Fetch(array) gives a number of the lanes' triangles.
+template <typename Real, class Fetch, class W = hn::Vec<WideLanes<Real>>>
+HWY_INLINE void StoreCurve(const TriangleArrays<Real>& triangles, const Fetch& fetch,
+                           const W (&weights)[3], hn::Mask<WideLanes<Real>> is_smooth,
+                           const SurfaceOutput<Real>& surfaces, std::uint32_t i) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const auto load = [&](const Real* field) HWY_ATTR { return Widen(hn::LoadU(dn, field + i)); };
+  const W px = load(surfaces.position_x), py = load(surfaces.position_y),
+          pz = load(surfaces.position_z);
+  const W fx = load(surfaces.face_x), fy = load(surfaces.face_y), fz = load(surfaces.face_z);
+  const W zero = hn::Zero(dw);
+  W unit_x[3] = {fx, fx, fx}, unit_y[3] = {fy, fy, fy}, unit_z[3] = {fz, fz, fz};
+  W lift_x = zero, lift_y = zero, lift_z = zero;
+  for (int k = 0; k < 3; ++k) {
+    W x = fetch(triangles.normal[k][0]), y = fetch(triangles.normal[k][1]),
+      z = fetch(triangles.normal[k][2]);
+    const auto has_normal = hn::Gt(Dot(dw, x, y, z, x, y, z), zero);  // false for NaN
+    NormalizeWide(dw, x, y, z);
+    const auto turn = hn::Lt(Dot(dw, x, y, z, fx, fy, fz), zero);
+    const auto facing = [&](W n, W face) HWY_ATTR {
+      return hn::IfThenElse(has_normal, hn::IfThenElse(turn, hn::Neg(n), n), face);
+    };
+    unit_x[k] = facing(x, fx), unit_y[k] = facing(y, fy), unit_z[k] = facing(z, fz);
+    const W depth = Dot(
+        dw, hn::Sub(fetch(triangles.vertex[k][0]), px), hn::Sub(fetch(triangles.vertex[k][1]), py),
+        hn::Sub(fetch(triangles.vertex[k][2]), pz), unit_x[k], unit_y[k], unit_z[k]);
+    const W weight = hn::Mul(hn::IfThenElseZero(hn::Gt(depth, zero), depth), weights[k]);
+    lift_x = hn::Add(lift_x, hn::Mul(unit_x[k], weight));
+    lift_y = hn::Add(lift_y, hn::Mul(unit_y[k], weight));
+    lift_z = hn::Add(lift_z, hn::Mul(unit_z[k], weight));
+  }
+  W square = zero;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const W x = hn::Sub(unit_x[next], unit_x[k]), y = hn::Sub(unit_y[next], unit_y[k]),
+            z = hn::Sub(unit_z[next], unit_z[k]);
+    const W turn = Dot(dw, x, y, z, x, y, z);
+    square = hn::IfThenElse(hn::Lt(square, turn), turn, square);
+  }
+  const auto store = [&](W p, W lift, Real* HWY_RESTRICT to) HWY_ATTR {
+    hn::StoreU(Narrow<Real>(hn::IfThenElse(is_smooth, hn::Add(p, lift), p)), dn, to + i);
+  };
+  store(px, lift_x, surfaces.shadow_x);
+  store(py, lift_y, surfaces.shadow_y);
+  store(pz, lift_z, surfaces.shadow_z);
+  hn::StoreU(Narrow<Real>(hn::IfThenElseZero(is_smooth, hn::Sqrt(square))), dn, surfaces.bend + i);
+}
+
 template <typename Real>
 void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
                         const HitBatch& batch, std::uint32_t needs,
@@ -49,6 +99,12 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
       hn::StoreU(face_x, dn, surfaces.face_x + i);
       hn::StoreU(face_y, dn, surfaces.face_y + i);
       hn::StoreU(face_z, dn, surfaces.face_z + i);
+      if (!has_normals && NeedsCurves(needs)) {
+        hn::StoreU(hn::LoadU(dn, surfaces.position_x + i), dn, surfaces.shadow_x + i);
+        hn::StoreU(hn::LoadU(dn, surfaces.position_y + i), dn, surfaces.shadow_y + i);
+        hn::StoreU(hn::LoadU(dn, surfaces.position_z + i), dn, surfaces.shadow_z + i);
+        hn::StoreU(hn::Zero(dn), dn, surfaces.bend + i);
+      }
       if (has_normals) {
         W x = mean(triangles.normal, 0), y = mean(triangles.normal, 1),
           z = mean(triangles.normal, 2);
@@ -64,6 +120,8 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
         store(x, face_x, surfaces.normal_x);
         store(y, face_y, surfaces.normal_y);
         store(z, face_z, surfaces.normal_z);
+        if (NeedsCurves(needs))
+          StoreCurve<Real>(triangles, of_primitive, {w0, w1, w2}, is_smooth, surfaces, i);
       }
     }
     if (needs & kNeedsTint) {

@@ -10,8 +10,8 @@ namespace sheaf {
 
 // Of surfaces[0, batch.count) that TriangleSurfaces left: with kNeedsNormals in `needs` keeps the
 // face's normal as the face, and puts the shading normal in its place where the vertices have one;
-// with kNeedsTint writes the tint. Bits: as sheaf::scalar::TriangleSurface. Reads and writes
-// PaddedCount(batch.count) lanes.
+// where NeedsCurves(needs) writes where shadow rays end and the bend; with kNeedsTint writes the
+// tint. Bits: as sheaf::scalar::TriangleSurface. Reads and writes PaddedCount(batch.count) lanes.
 template <typename Real>
 using BlendVerticesKernel = void(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
                                  const HitBatch& batch, std::uint32_t needs,

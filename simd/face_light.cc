@@ -26,11 +26,11 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
     // False for NaN: a light that lies on the point gives nothing.
     auto lanes = hn::And(LanesBelow(d, i, count), hn::Gt(n_dot_l, hn::Zero(d)));
     lanes = hn::And(lanes, HasLocalLight(d, material, surfaces, i));
-    if (material.needs & kNeedsNormals) {
+    if ((material.needs & kNeedsNormals) && surfaces.bend) {
       const V face_dot_l =
           Dot(d, hn::LoadU(d, surfaces.face_x + i), hn::LoadU(d, surfaces.face_y + i),
               hn::LoadU(d, surfaces.face_z + i), lx, ly, lz);
-      lanes = hn::And(lanes, hn::Gt(face_dot_l, hn::Zero(d)));
+      lanes = hn::And(lanes, hn::Gt(face_dot_l, hn::Neg(hn::LoadU(d, surfaces.bend + i))));
     }
     if (light.is_spot) {
       lanes = hn::And(lanes, hn::Gt(ConeShare(d, light, lx, ly, lz), hn::Zero(d)));

@@ -22,6 +22,8 @@ struct alignas(kAlignment) FrustumLeaf {
   Real nearest[kMaxLeafSize];  // the least distance along the dominant axis
   Real depth[kMaxLeafSize];    // the largest |z|
   Real slack[kMaxLeafSize];    // of x and y once sheared
+  const Real* block;           // the vertices as they are
+  std::uint32_t count;
 };
 
 template <typename Real>
@@ -32,6 +34,8 @@ HWY_INLINE void LoadTriangles(const Frustum<Real>& frustum, const Real* block, s
   const V ox = hn::Set(d, frustum.origin[0]), oy = hn::Set(d, frustum.origin[1]),
           oz = hn::Set(d, frustum.origin[2]);
   const V sign = hn::Set(d, frustum.sign);
+  leaf.block = block;
+  leaf.count = n;
   for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
     V width = hn::Zero(d), depth = hn::Zero(d), nearest = hn::Set(d, kDefaultTMax<Real>);
     for (int vertex = 0; vertex < 3; ++vertex) {
@@ -148,7 +152,7 @@ HWY_INLINE bool TriangleAgainstFrustum(const Batch<Output, Real>& batch, Frustum
   const auto z = [&](int v) SHEAF_LAMBDA { return hn::Set(d, leaf.z[v][i]); };
   const auto hit = TriangleAgainstRays<Output::kQuery>(
       d, FrustumRays<Output, Real>{batch, frustum, k}, frustum.kz, x(0), y(0), z(0), x(1), y(1),
-      z(1), x(2), y(2), z(2), id, open);
+      z(1), x(2), y(2), z(2), BlockColumns<Real>{leaf.block + i, leaf.count, 0}, id, open);
   const std::uint32_t bits = MaskBits(d, hit);
   frustum.without_hit[k] &= ~bits;
   return bits != 0;

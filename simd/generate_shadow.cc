@@ -28,9 +28,9 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
     const auto wanted = hn::Ne(LoadIds(d, faces + i), hn::Zero(di));
     const auto lanes = hn::And(LanesBelow(d, i, count), hn::RebindMask(d, wanted));
     if (hn::AllFalse(d, lanes)) continue;
-    const V px = hn::LoadU(d, surfaces.position_x + i);
-    const V py = hn::LoadU(d, surfaces.position_y + i);
-    const V pz = hn::LoadU(d, surfaces.position_z + i);
+    const V px = hn::LoadU(d, surfaces.shadow_x + i);
+    const V py = hn::LoadU(d, surfaces.shadow_y + i);
+    const V pz = hn::LoadU(d, surfaces.shadow_z + i);
     const V nx = hn::LoadU(d, surfaces.face_x + i);
     const V ny = hn::LoadU(d, surfaces.face_y + i);
     const V nz = hn::LoadU(d, surfaces.face_z + i);

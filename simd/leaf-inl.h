@@ -108,31 +108,6 @@ struct PacketRays {
   }
 };
 
-// One triangle, vertices relative to the rays' origins in the order kx, ky, kz of `axis`, against
-// the rays of `lanes`, all of that axis. Returns the lanes that hit it, which are kept.
-template <Query kQuery, class D, class Rays, class M, class V>
-HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V az, V bx, V by,
-                                 V bz, V cx, V cy, V cz, std::uint32_t id, M lanes) {
-  const int kx = axis == 2 ? 0 : axis + 1, ky = axis == 0 ? 2 : axis - 1;
-  V t, v, w, det;
-  const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::LoadU(d, rays.shear_x()),
-                               hn::LoadU(d, rays.shear_y()), hn::LoadU(d, rays.direction(kx)),
-                               hn::LoadU(d, rays.direction(ky)), hn::LoadU(d, rays.direction(axis)),
-                               lanes, t, v, w, det);
-  if (hn::AllFalse(d, inside)) return inside;
-  const IdLanes<D> di;
-  using Id = hn::TFromD<IdLanes<D>>;
-  const auto ids = hn::Set(di, Id{id});
-  const auto source = hn::And(rays.Sources(d), hn::Set(di, Id{~kInsideBit}));
-  const auto elsewhere = hn::RebindMask(d, hn::Ne(source, ids));
-  const auto slots = rays.slots();
-  const M within = hn::And(hn::Le(rays.TMin(d), t), hn::Le(t, hn::LoadU(d, slots.t_best)));
-  const M hit = hn::And(hn::And(inside, elsewhere), within);
-  if (hn::AllFalse(d, hit)) return hit;
-  KeepHits<kQuery>(d, slots, hit, t, v, w, det, ids);
-  return hit;
-}
-
 // The fields of a block of n, from one primitive on: all lanes have it (stride 0), or each the
 // next.
 template <typename Real>
@@ -144,6 +119,52 @@ struct BlockColumns {
     return {first + field * n, stride};
   }
 };
+
+template <typename Real>
+HWY_INLINE TrianglePairs<Real> PairsOf(const PairColumn<Real> (&origin)[3],
+                                       const PairColumn<Real> (&direction)[3],
+                                       const BlockColumns<Real>& fields) {
+  return {{origin[0], origin[1], origin[2]},
+          {direction[0], direction[1], direction[2]},
+          {{fields[0], fields[1], fields[2]},
+           {fields[3], fields[4], fields[5]},
+           {fields[6], fields[7], fields[8]}}};
+}
+
+// One triangle, vertices relative to the rays' origins in the order kx, ky, kz of `axis`, against
+// the rays of `lanes`, all of that axis; `fields` has the vertices as they are. Returns the lanes
+// that hit it, which are kept.
+template <Query kQuery, class D, class Rays, class M, class V, typename Real = hn::TFromD<D>>
+HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V az, V bx, V by,
+                                 V bz, V cx, V cy, V cz, const BlockColumns<Real>& fields,
+                                 std::uint32_t id, M lanes) {
+  const int kx = axis == 2 ? 0 : axis + 1, ky = axis == 0 ? 2 : axis - 1;
+  const IdLanes<D> di;
+  using Id = hn::TFromD<IdLanes<D>>;
+  const auto ids = hn::Set(di, Id{id});
+  const auto source = hn::And(rays.Sources(d), hn::Set(di, Id{~kInsideBit}));
+  const auto elsewhere = hn::RebindMask(d, hn::Ne(source, ids));
+  const auto refine = [&](auto far, V t) SHEAF_LAMBDA {
+    far = hn::And(far, elsewhere);
+    if (hn::AllFalse(d, far)) return t;
+    const TrianglePairs<Real> pairs = PairsOf<Real>(
+        {{rays.origin(0), 1}, {rays.origin(1), 1}, {rays.origin(2), 1}},
+        {{rays.direction(0), 1}, {rays.direction(1), 1}, {rays.direction(2), 1}}, fields);
+    return RefineT(d, pairs, MaskBits(d, far), t);
+  };
+  V t, v, w, det;
+  const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::LoadU(d, rays.shear_x()),
+                               hn::LoadU(d, rays.shear_y()), hn::LoadU(d, rays.direction(kx)),
+                               hn::LoadU(d, rays.direction(ky)), hn::LoadU(d, rays.direction(axis)),
+                               lanes, refine, t, v, w, det);
+  if (hn::AllFalse(d, inside)) return inside;
+  const auto slots = rays.slots();
+  const M within = hn::And(hn::Le(rays.TMin(d), t), hn::Le(t, hn::LoadU(d, slots.t_best)));
+  const M hit = hn::And(hn::And(inside, elsewhere), within);
+  if (hn::AllFalse(d, hit)) return hit;
+  KeepHits<kQuery>(d, slots, hit, t, v, w, det, ids);
+  return hit;
+}
 
 // What spheres and disks differ in, once the sphere around them passed the screen: which rays start
 // on them and see nothing of them, and the hit.
@@ -251,7 +272,8 @@ HWY_INLINE void TrianglesAgainstPacket(D d, const TreeView<Real>& tree, std::uin
         return hn::Sub(hn::Set(d, block[(3 * vertex + axis) * n + i]), oz);
       };
       TriangleAgainstRays<kQuery>(d, PacketRays<Real>{packet}, axis, x(0), y(0), z(0), x(1), y(1),
-                                  z(1), x(2), y(2), z(2), ids[i], along);
+                                  z(1), x(2), y(2), z(2), BlockColumns<Real>{block + i, n, 0},
+                                  ids[i], along);
     }
   }
 }
@@ -304,6 +326,8 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
   alignas(kAlignment) Real dets[kMaxLeafSize];
   const auto t_min = hn::Set(d, packet.t_min[lane]);
   const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const IdLanes<LeafLanes<Real>> di;
+  const auto own_id = hn::Set(di, hn::TFromD<decltype(di)>{source & ~kInsideBit});
   const std::size_t kz = packet.axis[lane], kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
   const Real* block = BlockOf<PrimitiveKind::kTriangle>(tree, leaf);
   const Real *xs = block + kx * n, *ys = block + ky * n, *zs = block + kz * n;
@@ -313,6 +337,17 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
   for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
     const auto relative = [&](const Real* at, V o)
                               SHEAF_LAMBDA { return hn::Sub(hn::LoadU(d, at + i), o); };
+    const auto refine = [&](auto far, V t) SHEAF_LAMBDA {
+      const auto own = hn::Eq(LoadIds(d, ids + i), own_id);
+      far = hn::AndNot(hn::RebindMask(d, own), far);
+      if (hn::AllFalse(d, far)) return t;
+      const auto of_ray = [&](const Real* field) -> PairColumn<Real> { return {field + lane, 0}; };
+      const TrianglePairs<Real> pairs = PairsOf<Real>(
+          {of_ray(packet.origin[0]), of_ray(packet.origin[1]), of_ray(packet.origin[2])},
+          {of_ray(packet.direction[0]), of_ray(packet.direction[1]), of_ray(packet.direction[2])},
+          BlockColumns<Real>{block + i, n, 1});
+      return RefineT(d, pairs, MaskBits(d, far), t);
+    };
     V t, v, w, det;
     const auto inside = HitTriangle(
         d, relative(xs, ox), relative(ys, oy), relative(zs, oz), relative(xs + next, ox),
@@ -320,7 +355,7 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
         relative(ys + 2 * next, oy), relative(zs + 2 * next, oz), hn::Set(d, packet.shear_x[lane]),
         hn::Set(d, packet.shear_y[lane]), hn::Set(d, packet.direction[kx][lane]),
         hn::Set(d, packet.direction[ky][lane]), hn::Set(d, packet.direction[kz][lane]),
-        LanesBelow(d, i, n), t, v, w, det);
+        LanesBelow(d, i, n), refine, t, v, w, det);
     if (hn::AllFalse(d, inside)) continue;
     const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::Set(d, packet.t_best[lane])));
     std::uint32_t hits = MaskBits(d, hn::And(inside, within));

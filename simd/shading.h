@@ -35,6 +35,11 @@ struct FinishData {
   Real alpha_factor = 1, alpha_cutoff = 0;
 };
 
+// Whether lights ask about the surface that smooth normals stand for.
+constexpr bool NeedsCurves(std::uint32_t needs) {
+  return (needs & kNeedsNormals) != 0 && (needs & kNeedsLights) != 0;
+}
+
 template <typename Real>
 struct MaterialData {
   std::uint32_t needs;  // NeedsOf(*this), or more

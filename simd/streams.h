@@ -84,7 +84,11 @@ struct SurfaceFields {
   Field<Real> face_x, face_y, face_z;  // the face's own normal: unit, facing the ray; these fields
                                        // may be the normal's where the two are one
   Field<Real> direction_x, direction_y, direction_z;  // of the ray, unit
-  Field<Real> u, v;                    // surface coordinates; the kernel leaves 0 on spheres
+  // What shadow rays ask about; these fields may be the position's where the two are one. Left
+  // alone where no light asks.
+  Field<Real> shadow_x, shadow_y, shadow_z;
+  Field<Real> bend;  // how far below the face a light may lie, as a cosine; null where all are flat
+  Field<Real> u, v;  // surface coordinates; the kernel leaves 0 on spheres
   Field<Real> tint_r, tint_g, tint_b;  // what the base colour is multiplied with, point by point
   Field<Real> offset;           // along the normal; takes a secondary ray past every rounding error
   Field<std::uint32_t> source;  // primitive id, with kInsideBit where the ray hit the back side
@@ -108,7 +112,8 @@ struct SurfaceFields {
       &SurfaceFields::emission_r, &SurfaceFields::emission_g, &SurfaceFields::emission_b,
       &SurfaceFields::kd, &SurfaceFields::ks, &SurfaceFields::shininess, &SurfaceFields::reflect_r,
       &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
-      &SurfaceFields::transmit_g, &SurfaceFields::transmit_b);
+      &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
+      &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend);
 };
 
 // Linear RGB, one an element.
@@ -179,12 +184,16 @@ struct HitBatch {
   std::uint32_t count;
 };
 
-// The same surfaces where no normal but the face's own is used.
+// The same surfaces where no normal but the face's own is used, so that nothing is curved.
 template <typename Real>
 SurfaceView<Real> WithoutFaces(SurfaceView<Real> surfaces) {
   surfaces.face_x = surfaces.normal_x;
   surfaces.face_y = surfaces.normal_y;
   surfaces.face_z = surfaces.normal_z;
+  surfaces.shadow_x = surfaces.position_x;
+  surfaces.shadow_y = surfaces.position_y;
+  surfaces.shadow_z = surfaces.position_z;
+  surfaces.bend = nullptr;
   return surfaces;
 }
 

@@ -12,6 +12,7 @@
 
 #include "simd/math-inl.h"
 #include "simd/roundoffs.h"
+#include "simd/sphere-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
@@ -60,12 +61,66 @@ HWY_INLINE void NarrowToExtent(D d, V direction, V a, V b, V c, V& enter, V& lea
   leave = hn::IfThenElse(still, leave, StrictMin(leave, last));
 }
 
+// Rays and the vertices of triangles of a vector of pairs, as the scene has them.
+template <typename Real>
+struct TrianglePairs {
+  PairColumn<Real> origin[3], direction[3];
+  PairColumn<Real> vertex[3][3];  // [vertex][axis]
+};
+
+// t of `lanes`, whose triangles reach far beyond their hits: RefineT of src/scalar/triangle.h. In
+// double in fast arithmetic too, where t would otherwise not tell a floor from what stands on it.
+template <class D, class V, typename Real = hn::TFromD<D>>
+HWY_NOINLINE V RefineT(D d, const TrianglePairs<Real>& pairs, std::uint32_t lanes, V t) {
+  const hn::CappedTag<double, kMaxLanes / 2> dw;
+  const hn::Rebind<Real, decltype(dw)> dn;
+  using W = hn::Vec<decltype(dw)>;
+  alignas(kAlignment) Real ts[kMaxLanes];
+  hn::Store(t, d, ts);
+  const std::uint32_t step = LaneCount(dn), half = (1u << step) - 1;
+  for (std::uint32_t lane = 0; lane < LaneCount(d); lane += step) {
+    if ((lanes >> lane & half) == 0) continue;
+    const auto wide = [&](const PairColumn<Real>& column)
+                          SHEAF_LAMBDA { return hn::PromoteTo(dw, column.Load(dn, lane)); };
+    const auto edge = [&](int vertex, int axis) SHEAF_LAMBDA {
+      return hn::Sub(wide(pairs.vertex[vertex][axis]), wide(pairs.vertex[0][axis]));
+    };
+    const W ex = edge(1, 0), ey = edge(1, 1), ez = edge(1, 2);
+    const W gx = edge(2, 0), gy = edge(2, 1), gz = edge(2, 2);
+    const W nx = hn::Sub(hn::Mul(ey, gz), hn::Mul(ez, gy));
+    const W ny = hn::Sub(hn::Mul(ez, gx), hn::Mul(ex, gz));
+    const W nz = hn::Sub(hn::Mul(ex, gy), hn::Mul(ey, gx));
+    const W dx = wide(pairs.direction[0]), dy = wide(pairs.direction[1]),
+            dz = wide(pairs.direction[2]);
+    const auto from_origin = [&](int axis) SHEAF_LAMBDA {
+      return hn::Sub(wide(pairs.vertex[0][axis]), wide(pairs.origin[axis]));
+    };
+    const W height = Dot(dw, nx, ny, nz, from_origin(0), from_origin(1), from_origin(2));
+    const W slope = Dot(dw, nx, ny, nz, dx, dy, dz);
+    const auto is_steep =
+        hn::Gt(hn::Mul(slope, slope),
+               hn::Mul(hn::Set(dw, kFlatSquare<Real, double>),
+                       hn::Mul(Dot(dw, nx, ny, nz, nx, ny, nz), Dot(dw, dx, dy, dz, dx, dy, dz))));
+    const W was = hn::PromoteTo(dw, hn::Load(dn, ts + lane));
+    const W refined = hn::IfThenElse(is_steep, hn::Div(height, slope), was);
+    alignas(kAlignment) double exact[kMaxLanes];
+    hn::Store(refined, dw, exact);
+    // Lane by lane: DemoteTo differs by target on what overflows.
+    for (std::uint32_t i = 0; i < step; ++i) {
+      if ((lanes >> (lane + i) & 1) != 0) ts[lane + i] = static_cast<Real>(exact[i]);
+    }
+  }
+  return hn::Load(d, ts);
+}
+
 // Lanes of `lanes` inside the triangle's edges, with t. All coordinates have their axes in the
 // order kx, ky, kz of the ray's shear; vertices are relative to the origin, (sx, sy) is the shear.
+// refine(far, t) is t with RefineT for the lanes of `far`, which few are.
 // Writes t, v, w and det only where some lane is inside; t is NaN where the ray misses after all.
-template <class D, class M, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+template <class D, class M, class Refine, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V cz, V sx, V sy,
-                         V dx, V dy, V dz, M lanes, V& t, V& v, V& w, V& det) {
+                         V dx, V dy, V dz, M lanes, const Refine& refine, V& t, V& v, V& w,
+                         V& det) {
   const V asx = hn::Sub(ax, hn::Mul(sx, az)), asy = hn::Sub(ay, hn::Mul(sy, az));
   const V bsx = hn::Sub(bx, hn::Mul(sx, bz)), bsy = hn::Sub(by, hn::Mul(sy, bz));
   const V csx = hn::Sub(cx, hn::Mul(sx, cz)), csy = hn::Sub(cy, hn::Mul(sy, cz));
@@ -88,8 +143,19 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
       hn::Add(hn::Add(hn::Mul(hn::Mul(ua, scale), az), hn::Mul(hn::Mul(vb, scale), bz)),
               hn::Mul(hn::Mul(wc, scale), cz));
   t = Divide(d, Divide(d, scaled_t, hn::Mul(sum, scale)), dz);
-  const M outside = hn::And(inside, hn::Or(IsOutsideExtent(d, hn::Mul(t, dx), ax, bx, cx),
-                                           IsOutsideExtent(d, hn::Mul(t, dy), ay, by, cy)));
+  M outside = NoLanes(d);
+  if constexpr (std::is_same_v<Real, float>) {
+    const V reach = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
+    const V met = hn::Mul(hn::Set(d, kFarReach<Real>), hn::Abs(hn::Mul(t, dz)));
+    const M far = hn::And(inside, hn::Gt(reach, met));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, far))) {
+      t = refine(far, t);
+      outside = hn::And(far, IsOutsideExtent(d, hn::Mul(t, dz), az, bz, cz));
+    }
+  }
+  const M beside = hn::Or(IsOutsideExtent(d, hn::Mul(t, dx), ax, bx, cx),
+                          IsOutsideExtent(d, hn::Mul(t, dy), ay, by, cy));
+  outside = hn::Or(outside, hn::And(inside, beside));
   if (HWY_UNLIKELY(!hn::AllFalse(d, outside))) {
     V enter = hn::Neg(hn::Inf(d)), leave = hn::Inf(d);
     NarrowToExtent(d, dx, ax, bx, cx, enter, leave);

@@ -56,19 +56,36 @@ void TriangleSurfacesLanes(const GeometryView<Real>& geometry, const RayView<Rea
     W ny = hn::Sub(hn::Mul(ez, gx), hn::Mul(ex, gz));
     W nz = hn::Sub(hn::Mul(ex, gy), hn::Mul(ey, gx));
     NormalizeWide(dw, nx, ny, nz);
-    const auto inside_wide =
-        hn::Gt(Dot(dw, nx, ny, nz, Widen(direction_x), Widen(direction_y), Widen(direction_z)),
-               hn::Zero(dw));
-    const auto sum_of_sizes = [&](W a, W b, W c) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Abs(c));
+    const W ox = Widen(of_ray(rays.origin_x)), oy = Widen(of_ray(rays.origin_y)),
+            oz = Widen(of_ray(rays.origin_z));
+    const W dx = Widen(direction_x), dy = Widen(direction_y), dz = Widen(direction_z);
+    const W slope = Dot(dw, nx, ny, nz, dx, dy, dz);
+    const W t =
+        hn::Div(Dot(dw, nx, ny, nz, hn::Sub(ax, ox), hn::Sub(ay, oy), hn::Sub(az, oz)), slope);
+    const auto inside_wide = hn::Gt(slope, hn::Zero(dw));
+    const auto is_steep =
+        hn::Gt(hn::Mul(slope, slope),
+               hn::Mul(hn::Set(dw, kFlatSquare<Real, Wide>),
+                       hn::Mul(Dot(dw, nx, ny, nz, nx, ny, nz), Dot(dw, dx, dy, dz, dx, dy, dz))));
+    const auto position = [&](W o, W d, W a, W b, W c) HWY_ATTR {
+      return hn::IfThenElse(is_steep, hn::Add(o, hn::Mul(d, t)), mean(a, b, c));
     };
-    const W error = hn::Mul(hn::Set(dw, static_cast<Wide>(kPositionRoundoffs<Real>)),
-                            AbsDot(dw, nx, ny, nz, sum_of_sizes(ax, bx, cx),
-                                   sum_of_sizes(ay, by, cy), sum_of_sizes(az, bz, cz)));
+    const W px = position(ox, dx, ax, bx, cx), py = position(oy, dy, ay, by, cy),
+            pz = position(oz, dz, az, bz, cz);
+    const auto sum_of_sizes = [&](W a, W b, W c, W o) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Abs(c)), hn::Abs(o));
+    };
+    const W position_error = hn::Mul(hn::Set(dw, static_cast<Wide>(kFoldRoundoffs<Real>)),
+                                     AbsDot(dw, nx, ny, nz, px, py, pz));
+    const W term_error =
+        hn::Mul(hn::Set(dw, kTermRoundoffs<Wide>),
+                AbsDot(dw, nx, ny, nz, sum_of_sizes(ax, bx, cx, ox), sum_of_sizes(ay, by, cy, oy),
+                       sum_of_sizes(az, bz, cz, oz)));
+    const W error = hn::Add(position_error, term_error);
 
-    hn::StoreU(Narrow<Real>(mean(ax, bx, cx)), dn, surfaces.position_x + i);
-    hn::StoreU(Narrow<Real>(mean(ay, by, cy)), dn, surfaces.position_y + i);
-    hn::StoreU(Narrow<Real>(mean(az, bz, cz)), dn, surfaces.position_z + i);
+    hn::StoreU(Narrow<Real>(px), dn, surfaces.position_x + i);
+    hn::StoreU(Narrow<Real>(py), dn, surfaces.position_y + i);
+    hn::StoreU(Narrow<Real>(pz), dn, surfaces.position_z + i);
     const auto facing = [&](W n) HWY_ATTR {
       return Narrow<Real>(hn::IfThenElse(inside_wide, hn::Neg(n), n));
     };

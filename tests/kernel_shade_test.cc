@@ -63,6 +63,8 @@ void Fill(SurfaceStream<Real>& stream, const std::vector<Surface<Real>>& surface
     const Surface<Real>& s = surfaces[i];
     out.position_x[i] = s.position.x, out.position_y[i] = s.position.y,
     out.position_z[i] = s.position.z;
+    out.shadow_x[i] = s.shadow_end.x, out.shadow_y[i] = s.shadow_end.y;
+    out.shadow_z[i] = s.shadow_end.z, out.bend[i] = s.bend;
     out.normal_x[i] = s.normal.x, out.normal_y[i] = s.normal.y, out.normal_z[i] = s.normal.z;
     out.face_x[i] = s.face.x, out.face_y[i] = s.face.y, out.face_z[i] = s.face.z;
     out.tint_r[i] = s.tint.x, out.tint_g[i] = s.tint.y, out.tint_b[i] = s.tint.z;
@@ -82,7 +84,7 @@ std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count,
   while (surfaces.size() < count) {
     Surface<Real> s;
     const Vec3d p = UniformPoint(random, -5, 5);
-    s.position = Vec3<double>{p.x, p.y, p.z}.To<Real>();
+    s.position = s.shadow_end = Vec3<double>{p.x, p.y, p.z}.To<Real>();
     s.direction = RandomUnit(random).To<Real>();
     s.normal = RandomUnit(random).To<Real>();
     if (Dot(s.normal, s.direction) > 0) s.normal = -s.normal;
@@ -92,6 +94,8 @@ std::vector<Surface<Real>> RandomSurfaces(Random& random, std::uint32_t count,
       s.face = RandomUnit(random).To<Real>();
       if (Dot(s.face, s.direction) > 0) s.face = -s.face;
       if (Dot(s.face, s.normal) < 0) s.normal = -s.normal;
+      s.shadow_end = s.position + RandomUnit(random).To<Real>() * Real(0.1);
+      s.bend = static_cast<Real>(Uniform(random, 0, 0.5));
     }
     if (needs & kNeedsTint) {
       const Vec3d tint = UniformPoint(random, 0, 1);
@@ -239,6 +243,8 @@ TEST_CASE_TEMPLATE("surfaces", Real, float, double) {
               SameBits(want.direction, got.direction_x[i], got.direction_y[i], got.direction_z[i]));
           if (kind == PrimitiveKind::kTriangle) {
             REQUIRE(SameBits(want.face, got.face_x[i], got.face_y[i], got.face_z[i]));
+            REQUIRE(SameBits(want.shadow_end, got.shadow_x[i], got.shadow_y[i], got.shadow_z[i]));
+            REQUIRE(SameBits(want.bend, got.bend[i]));
             REQUIRE(SameBits(want.tint, got.tint_r[i], got.tint_g[i], got.tint_b[i]));
           }
           REQUIRE(SameBits(want.u, got.u[i]));

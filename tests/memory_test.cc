@@ -54,6 +54,7 @@ TEST_CASE("a scene pays in memory for what it has") {
   CheckBytes(SceneOf(kSphere, kFlat, ""), 124, 220);
   CheckBytes(SceneOf(kSphere, kFlat, kLight), 184, 324);
   CheckBytes(SceneOf(kMesh, kFlat, ""), 124 + 12, 220 + 24);
+  CheckBytes(SceneOf(kMesh, kFlat, kLight), 184 + 12 + 16, 324 + 24 + 32);
   CheckBytes(SceneOf(kSphere, kChecker, ""), 124 + 8, 220 + 16);
   // One depth of reflected rays, which all miss, and their colours.
   CheckBytes(SceneOf(kSphere, R"("reflect": 1)", ""), 124 + 48 + 12, 220 + 84 + 24);

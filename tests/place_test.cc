@@ -1,12 +1,9 @@
 // Pictures do not depend on where in the world a scene lies, or on its unit of length.
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <vector>
 
+#include "pixels_over.h"
 #include "same_bits.h"
 #include "sheaf/render.h"
-#include "src/formats/quantize.h"
 #include "src/render/place_scene.h"
 #include "src/scene/transform.h"
 #include "test_frames.h"
@@ -48,18 +45,6 @@ Scene Placed(const Scene& scene, const Vec3d& offset, double scale) {
     point->falloff.quadratic /= scale * scale;
   }
   return placed;
-}
-
-int PixelsOver(const Film& a, const Film& b) {
-  const auto x = QuantizeTo8Bit(a, Transfer::kLinear), y = QuantizeTo8Bit(b, Transfer::kLinear);
-  REQUIRE(x.size() == y.size());
-  int over = 0;
-  for (std::size_t i = 0; i < x.size(); i += 3) {
-    int largest = 0;
-    for (std::size_t k = i; k < i + 3; ++k) largest = std::max(largest, std::abs(x[k] - y[k]));
-    over += largest > 1;
-  }
-  return over;
 }
 
 // Strict on every target against double of the same scene, and that against where the scene was

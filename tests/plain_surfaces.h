@@ -21,7 +21,7 @@ inline Vec3<double> RandomAbout(Random& random, Vec3<double> normal) {
 // A level surface at `position` seen from straight above.
 inline scalar::Surface<float> Floor(Vec3<float> position = {0, 0, 0}) {
   scalar::Surface<float> surface;
-  surface.position = position;
+  surface.position = surface.shadow_end = position;
   surface.normal = surface.face = {0, 1, 0};
   surface.direction = {0, -1, 0};
   surface.offset = 1e-6f;

@@ -31,7 +31,7 @@ class HitBlock {
     std::size_t number = 0, id = 0;
     ForEachField(surfaces_, [&]<typename T>(T*& field) {
       if constexpr (std::is_same_v<T, Real>) {
-        // The terms that textures vary come last, and are for materials alone.
+        // What comes last is for lights and textures alone: no kernel here writes it.
         field = number < std::size(numbers_) ? numbers_[number++] : nullptr;
       } else {
         field = ids_[id++];

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <random>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 
+#include "sheaf/formats.h"
 #include "sheaf/render.h"
 #include "src/formats/scene_json.h"
 #include "src/lab/picture_cases.h"
@@ -44,6 +48,25 @@ void BadMaterials(Report& report) {
                     "not one line with its place: " + message);
     }
   }
+}
+
+void PngTransfers(Report& report) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / fmt::format("sheaf-{}", std::random_device()());
+  std::error_code error;
+  report.Expect(fs::create_directory(folder, error), error.message());
+  const Film film = RenderSmall(report, NewScene());
+  for (const Transfer transfer : {Transfer::kLinear, Transfer::kSrgb}) {
+    const std::string path = (folder / "a.png").string();
+    const Status written = WritePicture(film, transfer, path);
+    const Result<ReadPictureResult> read = ReadPicture(path);
+    report.Expect(written.ok() && read.ok(), "no picture");
+    if (!read) continue;
+    report.Expect(read.value().is_linear == (transfer == Transfer::kLinear), "linear or not");
+    report.Expect(read.value().is_srgb == (transfer == Transfer::kSrgb), "sRGB or not");
+  }
+  fs::remove_all(folder, error);
 }
 
 // A picture of any size has the pixels of a crop, bit for bit.

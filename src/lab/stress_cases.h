@@ -81,8 +81,25 @@ void OverbrightSurfaces(Report& report);
 void ManyLights(Report& report);
 void ScaledPictures(Report& report);
 
+// place_cases.cc
+void MovedScenes(Report& report);
+void UnitsOfLength(Report& report);
+void HugeGround(Report& report);
+void ThinWalls(Report& report);
+void SmoothTerminator(Report& report);
+
+// geometry_cases.cc
+void AnySize(Report& report);
+void GiantsAndOddRays(Report& report);
+void GoingOn(Report& report);
+
+// watertight_cases.cc
+void NoMiss(Report& report);
+void SingleHit(Report& report);
+
 // description_cases.cc
 void BadMaterials(Report& report);
+void PngTransfers(Report& report);
 void OddSizes(Report& report);
 void Nothing(Report& report);
 void Transforms(Report& report);

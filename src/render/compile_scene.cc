@@ -319,6 +319,9 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
   }
+  if (scene.lights.empty()) {
+    for (auto& material : compiled.materials) material.needs &= ~(kNeedsLights | kNeedsHighlight);
+  }
   Store(scene.settings.background, compiled.background);
   if (scene.settings.environment) CompileEnvironment(*scene.settings.environment, compiled);
   return compiled;

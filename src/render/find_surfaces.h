@@ -17,14 +17,17 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
   const auto bits = [](auto... field) { return (FieldBit(field) | ...); };
   const std::uint64_t coordinates = bits(&Fields::u, &Fields::v);
   const std::uint64_t faces = bits(&Fields::face_x, &Fields::face_y, &Fields::face_z);
+  const std::uint64_t curves =
+      bits(&Fields::shadow_x, &Fields::shadow_y, &Fields::shadow_z, &Fields::bend);
   const std::uint64_t tints = bits(&Fields::tint_r, &Fields::tint_g, &Fields::tint_b);
   const std::uint64_t terms =
       bits(&Fields::ambient_r, &Fields::ambient_g, &Fields::ambient_b, &Fields::emission_r,
            &Fields::emission_g, &Fields::emission_b, &Fields::kd, &Fields::ks, &Fields::shininess,
            &Fields::reflect_r, &Fields::reflect_g, &Fields::reflect_b, &Fields::transmit_r,
            &Fields::transmit_g, &Fields::transmit_b);
-  return ~(coordinates | faces | tints | terms) | (needs & kNeedsCoordinates ? coordinates : 0) |
-         (needs & kNeedsNormals ? faces : 0) | (needs & kNeedsTint ? tints : 0) |
+  return ~(coordinates | faces | curves | tints | terms) |
+         (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
+         (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
          (needs & kNeedsTerms ? terms : 0);
 }
 

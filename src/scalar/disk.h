@@ -115,6 +115,7 @@ Surface<Real> DiskSurface(const Ray<Real>& ray, const Hit<Real>& hit, const Disk
 
   Surface<Real> surface;
   surface.position = position.template To<Real>();
+  surface.shadow_end = surface.position;
   surface.face = (inside ? -front : front).template To<Real>();
   surface.normal = surface.face;
   surface.direction = ray.direction;

@@ -98,8 +98,8 @@ Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& s
   if (is_at_point) incidence.n_dot_l = 0;
   incidence.attenuation =
       1 / ((light.falloff[0] + light.falloff[1] * distance) + light.falloff[2] * squared);
-  // Nor does a shading normal light the back of a face.
-  incidence.reaches = incidence.n_dot_l > 0 && Dot(surface.face, incidence.l) > 0;
+  // Nor does a shading normal light the back of a face, but where the face is bent.
+  incidence.reaches = incidence.n_dot_l > 0 && Dot(surface.face, incidence.l) > -surface.bend;
   if (light.is_spot) {
     const Real share = ConeShare(light, incidence.l);
     incidence.attenuation = incidence.attenuation * share;

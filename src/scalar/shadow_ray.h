@@ -12,17 +12,17 @@ namespace sheaf::scalar {
 template <typename Real>
 Ray<Real> ShadowRay(const LightData<Real>& light, const Surface<Real>& surface,
                     const Incidence<Real>& incidence) {
-  const Vec3<Real> to_light = incidence.to_light;
   if (light.kind == LightKind::kPointFromLight) {
-    const Real away = surface.offset + kLightRoundoffs<Real> * AbsDot(surface.face, to_light);
     const Vec3<Real> position = FromArray(light.vector);
-    const Vec3<Real> target = surface.position + surface.face * away;
+    const Real away = surface.offset +
+                      kLightRoundoffs<Real> * AbsDot(surface.face, position - surface.shadow_end);
+    const Vec3<Real> target = surface.shadow_end + surface.face * away;
     // From the inside of a sphere the light may have to pass the sphere itself.
     const std::uint32_t source = surface.inside() ? kNoPrimitive : surface.source;
     return {position, target - position, source, kDefaultTMin<Real>, Real(1)};
   }
-  const Vec3<Real> start = surface.position + surface.face * surface.offset;
-  if (light.kind == LightKind::kDirectional) return {start, to_light, surface.source};
+  const Vec3<Real> start = surface.shadow_end + surface.face * surface.offset;
+  if (light.kind == LightKind::kDirectional) return {start, incidence.to_light, surface.source};
   return {start, FromArray(light.vector) - start, surface.source, kDefaultTMin<Real>, Real(1)};
 }
 

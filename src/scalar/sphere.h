@@ -102,6 +102,7 @@ Surface<Real> SphereSurface(const Ray<Real>& ray, const Hit<Real>& hit,
 
   Surface<Real> surface;
   surface.position = position.template To<Real>();
+  surface.shadow_end = surface.position;
   surface.normal = (leaves ? -out : out).template To<Real>();
   surface.face = surface.normal;
   surface.direction = ray.direction;

@@ -19,6 +19,10 @@ struct Surface {
   Vec3<Real> normal;     // for shading: unit, on the face's side
   Vec3<Real> face;       // the face's own: unit, facing the ray
   Vec3<Real> direction;  // of the ray, unit
+  // What shadow rays ask about: the position, or the point of the curved surface that smooth
+  // normals stand for.
+  Vec3<Real> shadow_end;
+  Real bend = 0;  // how far below the face a light may lie, as a cosine; 0 where it is flat
   Real u = 0, v = 0;
   Vec3<Real> tint = {1, 1, 1};  // of the vertices' colours
   Real offset;

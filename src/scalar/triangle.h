@@ -110,6 +110,42 @@ Real KeepInExtent(Real t, Vec3<Real> direction, const TriangleShear<Real>& shear
   return t > leave ? leave : t;
 }
 
+// The plane of a triangle, of which `n` is any normal, as a ray meets it.
+template <typename W>
+struct PlaneMeeting {
+  W t, slope;  // slope: n . d
+
+  PlaneMeeting(Vec3<W> o, Vec3<W> d, Vec3<W> vertex, Vec3<W> n)
+      : t(Dot(n, vertex - o) / Dot(n, d)), slope(Dot(n, d)) {}
+};
+
+// Whether a ray is steep enough for t to be the plane's. False for NaN. Where there is nothing
+// wider than Real, only a perpendicular ray may be.
+template <typename Real, typename W>
+bool IsSteep(W slope, Vec3<W> n, Vec3<W> d) {
+  return slope * slope > kFlatSquare<Real, W> * (Dot(n, n) * Dot(d, d));
+}
+
+// Whether a triangle, of which a, b and c are the distances along the dominant axis, reaches far
+// beyond a hit at t. A mean of vertices that far away errs by roundoffs of them.
+template <typename Real>
+bool ReachesFar(Real t, Real dz, Real a, Real b, Real c) {
+  if (std::is_same_v<Wide<Real>, Real>) return false;  // nothing is wider
+  const Real reach = std::max(std::max(std::abs(a), std::abs(b)), std::abs(c));
+  return reach > kFarReach<Real> * std::abs(t * dz);
+}
+
+// t of such a hit: the plane, computed wide, knows better.
+template <typename Real>
+Real RefineT(Real t, Vec3<Real> origin, Vec3<Real> direction, const Vec3<Real> (&vertex)[3]) {
+  using W = Wide<Real>;
+  const Vec3<W> o = origin.template To<W>(), d = direction.template To<W>();
+  const Vec3<W> v0 = vertex[0].template To<W>();
+  const Vec3<W> n = Cross(vertex[1].template To<W>() - v0, vertex[2].template To<W>() - v0);
+  const PlaneMeeting<W> plane(o, d, v0, n);
+  return IsSteep<Real>(plane.slope, n, d) ? static_cast<Real>(plane.t) : t;
+}
+
 template <typename Real>
 SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origin,
                                                                 Vec3<Real> direction,
@@ -138,9 +174,12 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   const Real scale = ScaleOf(det);
   const Real scaled_t = ((u * scale) * a[kz] + (v * scale) * b[kz]) + (w * scale) * c[kz];
   Real t = (scaled_t / (det * scale)) / dz;
-  // Along kz t is a mean of the vertices already.
+  const bool is_far = ReachesFar(t, dz, a[kz], b[kz], c[kz]);
+  if (is_far) t = RefineT(t, origin, direction, vertex);
+  // Along kz a mean of the vertices is within their extent already.
   if (IsOutside(ExtentOf(a[kx], b[kx], c[kx]), t * direction[kx]) ||
-      IsOutside(ExtentOf(a[ky], b[ky], c[ky]), t * direction[ky])) {
+      IsOutside(ExtentOf(a[ky], b[ky], c[ky]), t * direction[ky]) ||
+      (is_far && IsOutside(ExtentOf(a[kz], b[kz], c[kz]), t * dz))) {
     t = KeepInExtent(t, direction, shear, a, b, c);
     if (std::isnan(t)) return std::nullopt;
   }
@@ -173,8 +212,46 @@ Vec3<Wide<Real>> VertexValue(const Real* const (&values)[3][3], int vertex, std:
       .template To<Wide<Real>>();
 }
 
-// The position is the barycentric mean of the vertices, whose error lies almost wholly in the
-// plane.
+// A vertex's normal, unit and on the side of the face; the face's own where the vertex has none.
+template <typename W, typename Real>
+Vec3<W> UnitNormal(const TriangleArrays<Real>& triangles, int vertex, std::uint32_t i,
+                   Vec3<W> face) {
+  const Vec3<W> normal = VertexValue(triangles.normal, vertex, i);
+  if (!(Dot(normal, normal) > 0)) return face;  // NaN either
+  const Vec3<W> unit = NormalizeWide(normal);
+  return Dot(unit, face) < 0 ? -unit : unit;
+}
+
+// Smooth normals stand for a curved surface, which flat faces cut. Shadow rays go to the point of
+// that surface over the hit: Hanika, "Hacking the Shadow Terminator" (Ray Tracing Gems II, chapter
+// 4). Different here: a light may lie below the face too, by as much as the normals of the vertices
+// differ. So light fades over the edges of faces, and what is lit from behind stays dark.
+template <typename Real>
+void Curve(const TriangleArrays<Real>& triangles, std::uint32_t i, const Vec3<Wide<Real>>& weights,
+           Surface<Real>& surface) {
+  using W = Wide<Real>;
+  const Vec3<W> position = surface.position.template To<W>();
+  const Vec3<W> face = surface.face.template To<W>();
+  Vec3<W> unit[3];
+  for (int k = 0; k < 3; ++k) unit[k] = UnitNormal(triangles, k, i, face);
+  Vec3<W> lift = {0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    // How far the point lies below the plane that touches the surface at the vertex.
+    const W depth = Dot(TriangleVertex(triangles, i, k).template To<W>() - position, unit[k]);
+    lift = lift + unit[k] * ((depth > 0 ? depth : W(0)) * weights[k]);
+  }
+  W square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3<W> turn = unit[(k + 1) % 3] - unit[k];
+    square = std::max(square, Dot(turn, turn));
+  }
+  surface.shadow_end = (position + lift).template To<Real>();
+  surface.bend = static_cast<Real>(std::sqrt(square));
+}
+
+// The position is where the ray meets the plane, wide: its error is the rounding. A ray that is too
+// flat for that has the barycentric mean of the vertices, which errs by roundoffs of the triangle,
+// but within the plane.
 template <typename Real>
 Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
                               const TriangleArrays<Real>& triangles, std::uint32_t i) {
@@ -185,11 +262,15 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   const W w1 = static_cast<W>(hit.u), w2 = static_cast<W>(hit.v);
   const W w0 = (1 - w1) - w2;
   const Vec3<W> front = NormalizeWide(Cross(v1 - v0, v2 - v0));
-  const bool inside = Dot(front, ray.direction.template To<W>()) > 0;
-  const Vec3<W> position = (v0 * w0 + v1 * w1) + v2 * w2;
+  const Vec3<W> o = ray.origin.template To<W>(), d = ray.direction.template To<W>();
+  const PlaneMeeting<W> plane(o, d, v0, front);
+  const bool inside = plane.slope > 0;
+  const Vec3<W> position =
+      IsSteep<Real>(plane.slope, front, d) ? o + d * plane.t : (v0 * w0 + v1 * w1) + v2 * w2;
 
   Surface<Real> surface;
   surface.position = position.template To<Real>();
+  surface.shadow_end = surface.position;
   surface.face = (inside ? -front : front).template To<Real>();
   surface.normal = surface.face;
   surface.direction = ray.direction;
@@ -204,6 +285,7 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
       // Files disagree on the side that normals show: it is the face's, which faces the ray.
       const bool turn = Dot(unit, surface.face.template To<W>()) < 0;
       surface.normal = (turn ? -unit : unit).template To<Real>();
+      Curve(triangles, i, {w0, w1, w2}, surface);
     }
   }
   if (triangles.colour[0][0]) {
@@ -221,12 +303,15 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
     surface.u = coordinate(0);
     surface.v = coordinate(1);
   }
-  // A neighbour's plane is tested from vertices that are as large as these, not as this point.
-  const Vec3<W> terms = {(std::abs(v0.x) + std::abs(v1.x)) + std::abs(v2.x),
-                         (std::abs(v0.y) + std::abs(v1.y)) + std::abs(v2.y),
-                         (std::abs(v0.z) + std::abs(v1.z)) + std::abs(v2.z)};
+  // What is wide errs by roundoffs of its terms; a neighbour's plane has vertices as large as
+  // these.
+  const auto sizes = [&](int axis) {
+    return ((std::abs(v0[axis]) + std::abs(v1[axis])) + std::abs(v2[axis])) + std::abs(o[axis]);
+  };
+  const Vec3<W> terms = {sizes(0), sizes(1), sizes(2)};
   surface.offset =
-      static_cast<Real>(static_cast<W>(kPositionRoundoffs<Real>) * AbsDot(front, terms));
+      static_cast<Real>(static_cast<W>(kFoldRoundoffs<Real>) * AbsDot(front, position) +
+                        kTermRoundoffs<W> * AbsDot(front, terms));
   surface.source = hit.primitive | (inside ? kInsideBit : 0);
   return surface;
 }
