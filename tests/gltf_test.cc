@@ -55,7 +55,7 @@ TEST_CASE("glTF, as text and as .glb") {
     CHECK(std::get<Orthographic>(scene.cameras[1].projection).height == 3);
     REQUIRE(scene.lights.size() == 3);
     CHECK(std::get<PointLight>(scene.lights[0].source).position == Vec3d(1, 2, 3));
-    CHECK(scene.lights[0].intensity == 30);
+    CHECK(scene.lights[0].intensity == doctest::Approx(30 / 3.14159265358979));  // candela
     CHECK(std::get<DirectionalLight>(scene.lights[1].source).direction == Vec3d(0, 0, -1));
     const auto cone = std::get<PointLight>(scene.lights[2].source).cone;
     REQUIRE(cone.has_value());

@@ -26,8 +26,6 @@ struct Exception {
 };
 
 const Exception kExceptions[] = {
-    // What TinyGLTF calls has its parameters.
-    {"src/formats/gltf_document.cc", "KeepImage"},
     // Kernels of one piece: their vectors would have to be handed over one by one to be split.
     {"simd/spawn_rays.cc", "SpawnRaysLanes"},
     {"simd/sphere_surface.cc", "FetchHits"},

@@ -5,15 +5,23 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sheaf/error.h"
+#include "src/formats/gltf_source.h"
 #include "src/formats/scene_files.h"
 
 namespace sheaf {
+
+// Where the bytes of an image lie: behind a URI, or else in a view of a buffer.
+struct GltfImage {
+  std::string uri;
+  int view = -1;
+};
 
 // What the readers of its parts share: the model, and the first fault that one of them finds.
 class GltfDocument {
@@ -22,31 +30,34 @@ class GltfDocument {
   GltfDocument(const GltfDocument&) = delete;
   GltfDocument& operator=(const GltfDocument&) = delete;
 
-  // False with a fault. May throw what tinygltf throws.
+  // False with a fault. May throw what tinygltf and its JSON library throw.
   bool Parse(std::string_view bytes);
 
+  // All of it but `images`, which are below.
   const tinygltf::Model& model() const { return model_; }
   std::size_t buffer_bytes() const { return buffer_bytes_; }  // of the file and of all buffers
 
-  // The bytes of an image as they lie in its file; empty where it cannot be read, and from the
-  // second call on.
-  std::string TakeImage(std::size_t index);
+  std::size_t image_count() const { return images_.size(); }
+  const GltfImage& image(std::size_t index) const { return images_[index]; }
+  // The bytes of an image as they lie in its file. An error, without a place, where there are none.
+  Result<std::string> ImageBytes(std::size_t index);
 
   // Keeps the first fault and returns false. `place` is a JSON pointer, or empty.
   bool Fail(std::string place, std::string_view what);
   Error Failure() const;
 
-  // What is passed over; `place` is a JSON pointer, or empty.
-  void Warn(const std::string& place, std::string_view what);
+  // What is left out or replaced, as Warnings::Add takes it; `place` is a JSON pointer, or empty.
+  void Warn(const std::string& place, std::string_view kind, std::string_view detail = {});
+  // The same for a part of the model's geometry.
+  void LeaveOut(const std::string& place, std::string_view kind, std::string_view detail = {});
+  // The first part that was left out.
+  const std::optional<Error>& left_out() const { return left_out_; }
 
  private:
-  std::string Folder() const;
-  std::optional<std::string> Allowed(const std::string& path);
-  static bool FileExists(const std::string& path, void* self);
-  static bool ReadFile(std::vector<unsigned char>* out, std::string* error, const std::string& path,
-                       void* self);
-  static bool KeepImage(tinygltf::Image* image, int index, std::string* error, std::string* warning,
-                        int width, int height, const unsigned char* bytes, int size, void* self);
+  bool LoadBuffers(const nlohmann::json& buffers, std::optional<std::string_view> binary);
+  bool LoadModel(const std::string& json);
+  Result<std::string> BytesOf(const std::string& uri);
+  std::string PlaceIn(const std::string& pointer) const;
 
   struct Fault {
     std::string place, what;
@@ -55,10 +66,10 @@ class GltfDocument {
   const std::string& name_;
   SceneFiles& files_;
   std::optional<Fault> fault_;
-  std::optional<std::string> refused_;  // a file that the library asked for and may not have
+  std::optional<Error> left_out_;
   tinygltf::Model model_;
+  std::vector<GltfImage> images_;
   std::size_t buffer_bytes_ = 0;
-  std::vector<std::string> encoded_images_;
 };
 
 // Whether `index` is one of `things`.

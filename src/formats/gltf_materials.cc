@@ -6,31 +6,75 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "src/formats/image.h"
-#include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
+#include "src/scene/srgb.h"
 
 namespace sheaf {
+
+// A surface by whichever of glTF's two descriptions it has.
+struct GltfMaterials::Surface {
+  Colour base{1.0};
+  double alpha = 1;
+  double metallic = 1, roughness = 1;
+  double specular = 1;      // the highlight of what is no metal, over that of an index of 1.5
+  double transmission = 0;  // of what is no metal
+  GltfTextureUse base_texture, gloss_texture;
+};
+
+struct GltfMaterials::Uses {
+  GltfTextureUse base, emissive, normal, gloss, occlusion;
+};
+
 namespace {
 
-double Factor(const tinygltf::Material& material, const char* extension, const char* key,
-              double otherwise) {
-  const auto found = material.extensions.find(extension);
-  if (found == material.extensions.end() || !found->second.Has(key)) return otherwise;
-  const tinygltf::Value& value = found->second.Get(key);
-  return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-}
+double Share(double number) { return std::clamp(number, 0.0, 1.0); }
+double Largest(const Colour& colour) { return std::max({colour.x, colour.y, colour.z}); }
 
-// The highlights and mirrors of a metallic-roughness surface.
-void SetGloss(double metallic, double roughness, const Colour& base, Material* material) {
-  const double sharpness = (1 - roughness) * (1 - roughness);
-  material->ks = (0.2 + 0.6 * metallic) * (1 - roughness);
+// The highlights and mirrors of a metallic-roughness surface, and its ambient light: a metal has
+// none on top of its mirror.
+void SetGloss(double metallic, double roughness, double specular, Material* material,
+              const Colour& base) {
+  const double smooth = 1 - roughness;
+  const double mirror = metallic * (smooth * smooth);
+  const double dielectric = 0.2 * (1 - metallic);
+  material->kd *= 1 - metallic * smooth;
+  material->ks = (0.2 + 0.6 * metallic + dielectric * (specular - 1)) * smooth;
   // Blinn and Phong's exponent for the roughness of a microfacet surface (Walter et al. 2007).
   const double alpha = std::max(roughness * roughness, 0.01);
   material->shininess = std::max(2 / (alpha * alpha) - 2, 1.0);
-  if (metallic * sharpness > 0.02) {
-    material->reflect = glm::min(base, Colour(1.0)) * (metallic * sharpness);
+  material->ambient *= 1 - mirror;
+  if (mirror > 0.02) material->reflect = glm::min(base, Colour(1.0)) * mirror;
+}
+
+// Seen as it is, whatever lights there are.
+void MakeUnlit(const Colour& base, Material* material) {
+  material->emission = base;
+  if (const auto* texture = std::get_if<Texture>(&material->base_colour)) {
+    material->emission_texture = *texture;
+    material->emission_texture->factor = Colour(1.0);
   }
+}
+
+bool HasAlpha(const Image& image) {
+  return std::any_of(image.texels.begin(), image.texels.end(),
+                     [](std::uint32_t texel) { return texel >> 24 != 255; });
+}
+
+// The mean of the texels as they lie in the file, in [0, 1].
+glm::dvec4 MeanOf(const Image& image) {
+  glm::dvec4 sum(0.0);
+  for (const std::uint32_t texel : image.texels) {
+    for (int c = 0; c < 4; ++c) sum[c] += texel >> (8 * c) & 255;
+  }
+  return sum / (255.0 * static_cast<double>(std::max<std::size_t>(image.texels.size(), 1)));
+}
+
+std::string FaultOf(const Material& material, const Colour& base) {
+  for (const double number : {material.kd, material.ks, base.x, base.y, base.z, material.emission.x,
+                              material.emission.y, material.emission.z, material.ior}) {
+    if (!(number <= 1e6)) return "a number is not finite, or above 1e6";
+  }
+  return "";
 }
 
 }  // namespace
@@ -51,92 +95,168 @@ std::uint32_t GltfMaterials::MaterialOf(int index) {
   return *plain_;
 }
 
+GltfMaterialUse GltfMaterials::UseOf(int index) const {
+  return IsIndexOf(index, uses_) ? uses_[static_cast<std::size_t>(index)] : GltfMaterialUse{};
+}
+
 bool GltfMaterials::ReadMaterial(std::size_t index) {
   const tinygltf::Material& from = document_.model().materials[index];
   const std::string place = fmt::format("/materials/{}", index);
-  const auto& pbr = from.pbrMetallicRoughness;
-  const double metallic = std::clamp(pbr.metallicFactor, 0.0, 1.0);
-  const double roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
-  const double transmission =
-      std::clamp(Factor(from, "KHR_materials_transmission", "transmissionFactor", 0), 0.0, 1.0);
-  const double glow = Factor(from, "KHR_materials_emissive_strength", "emissiveStrength", 1);
-  Colour base(1.0), emission(0.0);
-  for (int c = 0; c < 3; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    if (k < pbr.baseColorFactor.size()) base[c] = std::max(pbr.baseColorFactor[k], 0.0);
-    if (k < from.emissiveFactor.size()) emission[c] = std::max(from.emissiveFactor[k] * glow, 0.0);
-  }
+  const Surface surface = ReadSurface(from);
+  const auto info = [](const auto& i) { return TextureUse(i.index, i.texCoord, i.extensions); };
+  Uses uses{surface.base_texture, info(from.emissiveTexture), info(from.normalTexture),
+            surface.gloss_texture, info(from.occlusionTexture)};
+  const auto& extensions = from.extensions;
+  const bool is_unlit = FindExtension(extensions, "KHR_materials_unlit") != nullptr;
+  if (is_unlit) uses = {surface.base_texture, {}, {}, {}, {}};
+  uses_.push_back({ChooseSet(uses, place), is_unlit, from.alphaMode != "OPAQUE"});
+
   Material material;
   material.name = from.name;
-  material.base_colour = base;
-  material.emission = emission;
-  material.ambient = kModelAmbient * (1 - transmission);
-  const double matt = 1 - metallic * (1 - roughness);
-  material.kd = matt * (1 - transmission);
-  SetGloss(metallic, roughness, base, &material);
-  material.transmit = Colour(transmission * (1 - metallic));
-  material.ior = std::clamp(Factor(from, "KHR_materials_ior", "ior", 1.5), 1.0, 1e6);
-  for (const double number : {material.kd, material.ks, base.x, base.y, base.z, emission.x,
-                              emission.y, emission.z, material.ior}) {
-    if (!(number <= 1e6)) return document_.Fail(place, "a number is not finite, or above 1e6");
+  material.base_colour = surface.base;
+  if (const auto* ior = FindExtension(extensions, "KHR_materials_ior")) {
+    material.ior = std::clamp(NumberIn(*ior, "ior", 1.5), 1.0, 1e6);
+  } else {
+    material.ior = 1.5;
   }
-  if (pbr.baseColorTexture.index >= 0) {
-    Texture texture;
-    texture.factor = base;
-    if (!ReadTexture(pbr.baseColorTexture.index, place, &texture)) return false;
-    material.base_colour = texture;
+  double glow = 1;
+  if (const auto* strength = FindExtension(extensions, "KHR_materials_emissive_strength")) {
+    glow = NumberIn(*strength, "emissiveStrength", 1);
   }
-  if (from.alphaMode == "MASK" || from.alphaMode == "BLEND") {
-    document_.Warn(place, "alpha is not read: the material is opaque");
+  for (int c = 0; c < 3 && static_cast<std::size_t>(c) < from.emissiveFactor.size(); ++c) {
+    material.emission[c] = std::max(from.emissiveFactor[static_cast<std::size_t>(c)] * glow, 0.0);
   }
+  SetTextures(from, surface, uses, &material);
+  SetAlpha(from, surface.alpha, &material);
+  if (is_unlit) {
+    MakeUnlit(surface.base, &material);
+  } else {
+    // Where a texture says how metallic a point is the renderer does the rest.
+    const bool is_even = !material.metallic_roughness;
+    const double metallic = is_even ? surface.metallic : 0;
+    const double through = surface.transmission * (1 - metallic);
+    material.kd = 1 - through;
+    material.ambient = kModelAmbient * (1 - through);
+    material.transmit = through * glm::min(surface.base, Colour(1.0));
+    SetGloss(metallic, surface.roughness, surface.specular, &material, surface.base);
+  }
+  const std::string fault = FaultOf(material, surface.base);
+  if (!fault.empty()) return document_.Fail(place, fault);
   scene_.materials.push_back(std::move(material));
   return true;
 }
 
-bool GltfMaterials::ReadTexture(int index, const std::string& place, Texture* out) {
-  const tinygltf::Model& model = document_.model();
-  if (!IsIndexOf(index, model.textures)) {
-    return document_.Fail(place, fmt::format("texture {} of {}", index, model.textures.size()));
+GltfMaterials::Surface GltfMaterials::ReadSurface(const tinygltf::Material& from) {
+  if (const auto* old = FindExtension(from.extensions, "KHR_materials_pbrSpecularGlossiness")) {
+    return ReadSpecularGlossiness(*old);
   }
-  const tinygltf::Texture& texture = model.textures[static_cast<std::size_t>(index)];
-  if (!IsIndexOf(texture.source, model.images)) {
-    return document_.Fail(fmt::format("/textures/{}", index),
-                          fmt::format("image {} of {}", texture.source, model.images.size()));
+  Surface surface;
+  const auto& pbr = from.pbrMetallicRoughness;
+  for (std::size_t c = 0; c < pbr.baseColorFactor.size() && c < 4; ++c) {
+    const double factor = std::max(pbr.baseColorFactor[c], 0.0);
+    (c == 3 ? surface.alpha : surface.base[static_cast<int>(c)]) = factor;
   }
-  if (!LoadImage(static_cast<std::size_t>(texture.source), &out->image)) return false;
-  if (texture.sampler < 0) return true;
-  if (!IsIndexOf(texture.sampler, model.samplers)) {
-    return document_.Fail(fmt::format("/textures/{}", index),
-                          fmt::format("sampler {} of {}", texture.sampler, model.samplers.size()));
+  surface.metallic = Share(pbr.metallicFactor);
+  surface.roughness = Share(pbr.roughnessFactor);
+  const auto info = [](const auto& i) { return TextureUse(i.index, i.texCoord, i.extensions); };
+  surface.base_texture = info(pbr.baseColorTexture);
+  if (surface.metallic > 0 || surface.roughness > 0) {
+    surface.gloss_texture = info(pbr.metallicRoughnessTexture);
   }
-  const auto& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
-  const auto wrap = [](int mode) {
-    return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClamp
-           : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror
-                                                           : Wrap::kRepeat;
-  };
-  out->wrap_u = wrap(sampler.wrapS);
-  out->wrap_v = wrap(sampler.wrapT);
-  if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) out->filter = Filter::kNearest;
-  return true;
+  if (const auto* specular = FindExtension(from.extensions, "KHR_materials_specular")) {
+    Colour colour(1.0);
+    NumbersIn(*specular, "specularColorFactor", &colour);
+    surface.specular = std::clamp(
+        NumberIn(*specular, "specularFactor", 1) * std::max(Largest(colour), 0.0), 0.0, 1e3);
+  }
+  if (const auto* through = FindExtension(from.extensions, "KHR_materials_transmission")) {
+    surface.transmission = Share(NumberIn(*through, "transmissionFactor", 0));
+    if (TextureUseIn(*through, "transmissionTexture").index >= 0) {
+      document_.Warn("/materials", "textures of transmission are not read");
+    }
+  }
+  return surface;
 }
 
-bool GltfMaterials::LoadImage(std::size_t index, std::shared_ptr<const Image>* out) {
-  const std::string place = fmt::format("/images/{}", index);
-  const auto& images = document_.model().images;
-  images_.resize(images.size());
-  std::shared_ptr<const Image>& image = images_[index];
-  if (!image) {
-    const std::string& uri = images[index].uri;
-    const std::string bytes = document_.TakeImage(index);
-    if (bytes.empty()) return document_.Fail(place, fmt::format("cannot read {}", Printable(uri)));
-    Result<Image> decoded = DecodeImage(bytes);
-    if (!decoded) return document_.Fail(place, decoded.error().message);
-    decoded.value().name = uri.starts_with("data:") ? "" : uri;
-    image = std::make_shared<const Image>(std::move(decoded).value());
+// The older description, as well as it fits. A texture of it counts by its mean.
+GltfMaterials::Surface GltfMaterials::ReadSpecularGlossiness(const tinygltf::Value& from) {
+  Surface surface;
+  glm::dvec4 diffuse(1.0);
+  Colour specular(1.0);
+  NumbersIn(from, "diffuseFactor", &diffuse);
+  NumbersIn(from, "specularFactor", &specular);
+  double glossiness = NumberIn(from, "glossinessFactor", 1);
+  surface.base_texture = TextureUseIn(from, "diffuseTexture");
+  const GltfTextureUse gloss = TextureUseIn(from, "specularGlossinessTexture");
+  if (const auto texture = textures_.Read(gloss, Transfer::kSrgb)) {
+    const glm::dvec4 mean = MeanOf(*texture->image);
+    for (int c = 0; c < 3; ++c) specular[c] *= SrgbDecode(mean[c]);
+    glossiness *= mean.w;
   }
-  *out = image;
-  return true;
+  specular = glm::clamp(specular, 0.0, 1.0);
+  surface.base = glm::max(Colour(diffuse), 0.0);
+  surface.alpha = diffuse.w;
+  surface.roughness = 1 - Share(glossiness);
+  surface.metallic = 0;
+  // An index of 1.5 mirrors 0.04; nothing shines more than a metal, whose highlight is 4 times it.
+  surface.specular = std::min(Largest(specular) / 0.04, 4.0);
+  if (surface.base_texture.index < 0 && Largest(surface.base) <= 0.1 * Largest(specular)) {
+    surface.metallic = 1;
+    surface.base = specular;
+  }
+  return surface;
+}
+
+// Surfaces have one set of coordinates: that of the first texture. Those by another are left out.
+int GltfMaterials::ChooseSet(Uses& uses, const std::string& place) {
+  int chosen = -1;
+  for (GltfTextureUse* use :
+       {&uses.base, &uses.emissive, &uses.normal, &uses.gloss, &uses.occlusion}) {
+    if (use->index < 0) continue;
+    if (chosen < 0) chosen = use->set;
+    if (use->set == chosen) continue;
+    document_.Warn(place, "textures by a second set of coordinates are left out",
+                   fmt::format("TEXCOORD_{} beside TEXCOORD_{}", use->set, chosen));
+    use->index = -1;
+  }
+  return chosen;
+}
+
+void GltfMaterials::SetTextures(const tinygltf::Material& from, const Surface& surface,
+                                const Uses& uses, Material* material) {
+  if (auto base = textures_.Read(uses.base, Transfer::kSrgb)) {
+    base->factor = surface.base;
+    material->base_colour = *std::move(base);
+  }
+  if (material->emission != Colour(0.0)) {
+    material->emission_texture = textures_.Read(uses.emissive, Transfer::kSrgb);
+  }
+  if (auto gloss = textures_.Read(uses.gloss, Transfer::kLinear)) {
+    material->metallic_roughness =
+        MetallicRoughness{*std::move(gloss), surface.metallic, surface.roughness};
+  }
+  if (auto occlusion = textures_.Read(uses.occlusion, Transfer::kLinear)) {
+    material->occlusion = Occlusion{*std::move(occlusion), Share(from.occlusionTexture.strength)};
+  }
+  if (auto normal = textures_.Read(uses.normal, Transfer::kLinear)) {
+    material->normal_map =
+        NormalMap{*std::move(normal), std::clamp(from.normalTexture.scale, -1e6, 1e6)};
+  }
+}
+
+// What is opaque everywhere stays so: many files ask for blending that needs none.
+void GltfMaterials::SetAlpha(const tinygltf::Material& from, double alpha, Material* material) {
+  if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
+  const auto* base = std::get_if<Texture>(&material->base_colour);
+  const double cutoff = std::max(from.alphaCutoff, 0.0);
+  const bool is_mask = from.alphaMode == "MASK";
+  const double least = is_mask ? std::min(cutoff, 1.0) : 1.0;
+  const bool is_varied = base != nullptr && HasAlpha(*base->image);
+  if (!is_varied && alpha >= least && !(is_mask && cutoff > 1)) return;
+  material->alpha.mode = is_mask ? AlphaMode::kMask : AlphaMode::kBlend;
+  material->alpha.factor = is_mask && cutoff > 1 ? 0 : Share(alpha);
+  // Nothing reaches a cutoff above 1.
+  material->alpha.cutoff = is_mask ? (cutoff > 1 ? 1 : cutoff) : 0.5;
 }
 
 }  // namespace sheaf

@@ -1,38 +1,55 @@
-// The materials of a glTF file, and their textures.
+// The materials of a glTF file.
 #ifndef SHEAF_FORMATS_GLTF_MATERIALS_H_
 #define SHEAF_FORMATS_GLTF_MATERIALS_H_
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sheaf/scene.h"
 #include "src/formats/gltf_document.h"
+#include "src/formats/gltf_textures.h"
 
 namespace sheaf {
+
+// What meshes have to know of their material.
+struct GltfMaterialUse {
+  int texture_set = -1;  // whose TEXCOORD its textures lie by; -1: it has no textures
+  bool is_unlit = false;
+  bool has_alpha = false;
+};
 
 // Turns metallic and roughness into what a Whitted tracer has (docs/formats.md, "glTF").
 class GltfMaterials {
  public:
-  GltfMaterials(GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
+  GltfMaterials(GltfDocument& document, Scene& scene)
+      : document_(document), scene_(scene), textures_(document) {}
 
   // All of the file's materials, into the scene. False with a fault in the document.
   bool Read();
 
   // The scene's material for one of the file's; a plain one for -1.
   std::uint32_t MaterialOf(int index);
+  GltfMaterialUse UseOf(int index) const;
 
  private:
+  struct Surface;
+  struct Uses;
+
   bool ReadMaterial(std::size_t index);
-  bool ReadTexture(int index, const std::string& place, Texture* out);
-  bool LoadImage(std::size_t index, std::shared_ptr<const Image>* out);
+  Surface ReadSurface(const tinygltf::Material& from);
+  Surface ReadSpecularGlossiness(const tinygltf::Value& from);
+  int ChooseSet(Uses& uses, const std::string& place);
+  void SetAlpha(const tinygltf::Material& from, double alpha, Material* material);
+  void SetTextures(const tinygltf::Material& from, const Surface& surface, const Uses& uses,
+                   Material* material);
 
   GltfDocument& document_;
   Scene& scene_;
-  std::vector<std::shared_ptr<const Image>> images_;
+  GltfTextures textures_;
+  std::vector<GltfMaterialUse> uses_;
   std::optional<std::uint32_t> plain_;
 };
 

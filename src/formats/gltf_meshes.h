@@ -3,6 +3,7 @@
 #define SHEAF_FORMATS_GLTF_MESHES_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,18 +19,31 @@ class GltfMeshes {
   GltfMeshes(GltfDocument& document, GltfMaterials& materials, Scene& scene)
       : document_(document), materials_(materials), scene_(scene) {}
 
-  // A mesh of the file where a node puts it: an object a primitive. False with a fault in the
-  // document.
-  bool Add(int index, const std::string& node_name, const Transform& transform);
+  // The mesh of a node, where `transform` puts it or, of a skin, where its joints do: an object a
+  // primitive. False with a fault in the document.
+  bool Add(const tinygltf::Node& node, const Transform& transform,
+           const std::optional<std::vector<Transform>>& joints);
 
  private:
+  // What a node gives to all primitives of its mesh.
+  struct Placement {
+    const Transform& transform;
+    const std::optional<std::vector<Transform>>& joints;
+    const std::vector<double>& weights;  // of the morph targets
+  };
+
   bool AddPrimitive(const tinygltf::Primitive& primitive, const std::string& place,
-                    const std::string& name, const Transform& transform);
+                    const std::string& name, const Placement& placement);
+  bool IsLeftOut(const tinygltf::Primitive& primitive, const std::string& place);
+  const char* CompressionOf(const tinygltf::Primitive& primitive) const;
+  const char* CompressionOf(int accessor) const;
   bool ReadPrimitive(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);
+  bool ReadColours(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);
+  bool ReadTextureCoordinates(const tinygltf::Primitive& primitive, const std::string& place,
+                              Mesh* mesh);
   bool ReadTriangles(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);
-  bool ReadCorners(const tinygltf::Primitive& primitive, const std::string& place,
-                   std::size_t vertices, std::vector<std::uint32_t>* out);
-  std::string TextureCoordinates(const tinygltf::Primitive& primitive) const;
+  bool ReadCorners(const tinygltf::Primitive& primitive, std::size_t vertices,
+                   std::vector<std::uint32_t>* out);
 
   GltfDocument& document_;
   GltfMaterials& materials_;

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <set>
+#include <utility>
 
+#include "src/formats/gltf_skins.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
 
 constexpr int kMaxNodeDepth = 1024;
+constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegrees = 57.295779513082320877;  // of a radian
 
 Transform LocalTransform(const tinygltf::Node& node) {
@@ -63,9 +66,20 @@ bool IsInRange(const Transform& transform) {
 bool GltfNodes::Read() {
   std::vector<int> roots;
   if (!FindRoots(&roots)) return false;
-  visited_.assign(document_.model().nodes.size(), false);
+  const auto& nodes = document_.model().nodes;
+  visited_.assign(nodes.size(), false);
+  globals_.assign(nodes.size(), Transform{});
   for (const int root : roots) {
     if (!Visit(root, Transform{}, 0)) return false;
+  }
+  // Skins need the transforms of all their joints, wherever these stand.
+  for (const int index : order_) {
+    const tinygltf::Node& node = nodes[static_cast<std::size_t>(index)];
+    const Transform& transform = globals_[static_cast<std::size_t>(index)];
+    const std::string place = fmt::format("/nodes/{}", index);
+    if (node.mesh >= 0 && !AddMesh(node, place, transform)) return false;
+    if (node.camera >= 0 && !AddCamera(node, place, transform)) return false;
+    if (!AddLight(node, place, transform)) return false;
   }
   return true;
 }
@@ -108,13 +122,28 @@ bool GltfNodes::Visit(int index, const Transform& parent, int depth) {
   if (!IsInRange(transform)) {
     return document_.Fail(place, "its transform is not finite, or beyond 1e30");
   }
-  if (node.mesh >= 0 && !meshes_.Add(node.mesh, node.name, transform)) return false;
-  if (node.camera >= 0 && !AddCamera(node, place, transform)) return false;
-  if (!AddLight(node, place, transform)) return false;
+  globals_[i] = transform;
+  order_.push_back(index);
   for (const int child : node.children) {
     if (!Visit(child, transform, depth + 1)) return false;
   }
   return true;
+}
+
+// Of a skin's mesh the node's own transform does not count: the joints say where it is.
+bool GltfNodes::AddMesh(const tinygltf::Node& node, const std::string& place,
+                        const Transform& transform) {
+  if (node.skin < 0) return meshes_.Add(node, transform, std::nullopt);
+  const auto known = joints_.find(node.skin);
+  if (known != joints_.end()) return meshes_.Add(node, transform, known->second);
+  auto joints = ReadJoints(document_, node.skin, globals_);
+  if (!joints) return false;
+  const auto& skin = document_.model().skins[static_cast<std::size_t>(node.skin)];
+  for (const int joint : skin.joints) {
+    if (visited_[static_cast<std::size_t>(joint)]) continue;
+    document_.Warn(place, "a joint is not in the scene, and stands at its origin");
+  }
+  return meshes_.Add(node, transform, joints_[node.skin] = std::move(joints));
 }
 
 std::string GltfNodes::FreeName(const std::string& wanted) const {
@@ -177,12 +206,14 @@ bool GltfNodes::AddLight(const tinygltf::Node& node, const std::string& place,
   for (std::size_t c = 0; c < 3 && c < from.color.size(); ++c) {
     light.colour[static_cast<int>(c)] = from.color[c];
   }
-  light.intensity = from.intensity;
-  for (const double number : {light.intensity, light.colour.x, light.colour.y, light.colour.z}) {
-    if (!(number >= 0 && number <= 1e6)) {
-      return document_.Fail(light_place, "its colour or intensity is not in [0, 1e6]");
+  // Candela and lux: a matt white surface under E lux shines with E / pi candela a square metre.
+  light.intensity = from.intensity / kPi;
+  for (const double number : {from.intensity, light.colour.x, light.colour.y, light.colour.z}) {
+    if (!(number >= 0 && number <= 1e12)) {
+      return document_.Fail(light_place, "its colour or intensity is not in [0, 1e12]");
     }
   }
+  if (from.range > 0) document_.Warn(light_place, "the range of a light is not read");
   const Vec3d direction = transform.Vector({0, 0, -1});
   if (!(glm::length(direction) > 0)) {
     return document_.Fail(place, "the transform leaves no direction");

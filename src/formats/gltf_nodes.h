@@ -2,6 +2,8 @@
 #ifndef SHEAF_FORMATS_GLTF_NODES_H_
 #define SHEAF_FORMATS_GLTF_NODES_H_
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +24,9 @@ class GltfNodes {
 
  private:
   bool FindRoots(std::vector<int>* roots);
+  // Fills globals_ and order_.
   bool Visit(int index, const Transform& parent, int depth);
+  bool AddMesh(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool AddCamera(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool AddLight(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool ReadSource(const tinygltf::Light& from, const std::string& place, const Vec3d& position,
@@ -33,6 +37,9 @@ class GltfNodes {
   GltfMeshes& meshes_;
   Scene& scene_;
   std::vector<bool> visited_;
+  std::vector<Transform> globals_;                               // of all nodes
+  std::vector<int> order_;                                       // of those in the scene
+  std::map<int, std::optional<std::vector<Transform>>> joints_;  // by skin
 };
 
 }  // namespace sheaf

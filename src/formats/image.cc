@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
@@ -64,6 +65,31 @@ Result<Image> DecodePng(std::string_view bytes) {
   return image;
 }
 
+// Whether a JPEG has Adobe's segment: then its inks are stored as what they leave of the light.
+bool HasAdobeSegment(std::string_view bytes) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  for (std::size_t i = 2; i + 9 <= bytes.size() && at(i) == 0xff;) {
+    if (at(i + 1) == 0xee && bytes.substr(i + 4, 5) == "Adobe") return true;
+    if (at(i + 1) == 0xda) return false;  // the picture begins
+    i += 2 + (at(i + 2) << 8 | at(i + 3));
+  }
+  return false;
+}
+
+// Four inks as r, g, b, as browsers show them: each takes its share of the light, black of all.
+void InksToColours(bool is_light_left, Image& image) {
+  for (std::uint32_t& texel : image.texels) {
+    unsigned char inks[4];
+    std::memcpy(inks, &texel, 4);
+    const auto left = [&](int i) -> unsigned { return is_light_left ? inks[i] : 255u - inks[i]; };
+    for (int i = 0; i < 3; ++i) {
+      inks[i] = static_cast<unsigned char>((left(i) * left(3) + 127) / 255);
+    }
+    inks[3] = 255;
+    std::memcpy(&texel, inks, 4);
+  }
+}
+
 Result<Image> DecodeJpeg(std::string_view bytes) {
   const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), &tjDestroy);
   if (!decoder) return Refused("libjpeg-turbo does not start");
@@ -78,13 +104,38 @@ Result<Image> DecodeJpeg(std::string_view bytes) {
   if (const Status sized = CheckSize(side(width), side(height), bytes.size()); !sized) {
     return sized.error();
   }
+  const bool has_inks = colours == TJCS_CMYK || colours == TJCS_YCCK;
   Image image = NewImage(side(width), side(height));
   if (tjDecompress2(decoder.get(), data, bytes.size(),
                     reinterpret_cast<unsigned char*>(image.texels.data()), width, 0, height,
-                    TJPF_RGBA, 0) != 0) {
+                    has_inks ? TJPF_CMYK : TJPF_RGBA, 0) != 0) {
     return failed();
   }
+  if (has_inks) InksToColours(HasAdobeSegment(bytes), image);
   return image;
+}
+
+// Formats that are told by their first bytes, to say what an image is instead.
+constexpr std::pair<std::string_view, const char*> kOtherFormats[] = {
+    {"RIFF", "a WebP"},
+    {"\xabKTX 20", "a KTX2"},
+    {"\xabKTX 11", "a KTX"},
+    {"DDS ", "a DDS"},
+    {"BM", "a BMP"},
+    {"II*", "a TIFF"},
+    {"MM", "a TIFF"},
+    {"GIF8", "a GIF"},
+    {"#?RADIANCE", "a Radiance HDR"},
+    {"#?RGBE", "a Radiance HDR"},
+    {"\x76\x2f\x31\x01", "an OpenEXR"}};
+
+Error UnknownFormat(std::string_view bytes) {
+  for (const auto& [start, name] : kOtherFormats) {
+    if (bytes.starts_with(start)) {
+      return Refused(fmt::format("{}, neither a PNG nor a JPEG", name));
+    }
+  }
+  return Refused("neither a PNG nor a JPEG");
 }
 
 }  // namespace
@@ -92,7 +143,7 @@ Result<Image> DecodeJpeg(std::string_view bytes) {
 Result<Image> DecodeImage(std::string_view bytes) {
   Result<Image> image = bytes.starts_with("\x89PNG")        ? DecodePng(bytes)
                         : bytes.starts_with("\xff\xd8\xff") ? DecodeJpeg(bytes)
-                                                            : Refused("neither a PNG nor a JPEG");
+                                                            : UnknownFormat(bytes);
   if (image) ToNumbers(image.value());
   return image;
 }
