@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -130,6 +131,42 @@ TEST_CASE("layers have the same bits on every target") {
                           want.layers[i].size() * sizeof(float)) == 0);
       }
     });
+  }
+}
+
+// ---- Cameras that frame a model ----
+
+TEST_CASE("a lone model fits pictures of any shape") {
+  const Folder folder;
+  const std::string path = folder.Write("a.obj", R"(v -1 -0.1 0
+v 1 -0.1 0
+v 1 0.1 0
+v -1 0.1 0
+f 1 2 3 4
+)");
+  for (const double aspect : {0.2, 0.5, 1.0, 3.0}) {
+    CAPTURE(aspect);
+    ReadOptions read;
+    read.aspect = aspect;
+    const auto model = ReadScene(path, read);
+    REQUIRE(model.ok());
+    const Camera& camera = model.value().scene.cameras[0];
+    const Vec3d ahead = glm::normalize(camera.look_at - camera.eye);
+    const Vec3d right = glm::normalize(glm::cross(ahead, camera.up));
+    const Vec3d up = glm::cross(right, ahead);
+    const double tangent = std::tan(std::get<Perspective>(camera.projection).fov_y / 360 * M_PI);
+    double widest = 0;
+    for (const double x : {-1.0, 1.0}) {
+      for (const double y : {-0.1, 0.1}) {
+        const Vec3d to_corner = Vec3d(x, y, 0) - camera.eye;
+        const double depth = glm::dot(to_corner, ahead);
+        const double across = std::abs(glm::dot(to_corner, right)) / depth / (tangent * aspect);
+        CHECK(across <= 1);
+        CHECK(std::abs(glm::dot(to_corner, up)) / depth <= tangent);
+        widest = std::max(widest, across);
+      }
+    }
+    if (aspect <= 1) CHECK(widest > 0.7);  // nor is it far off
   }
 }
 

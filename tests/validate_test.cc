@@ -191,6 +191,14 @@ TEST_CASE("sound scenes are valid") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) CHECK(Validate(EverythingScene(seed)).ok());
 }
 
+TEST_CASE("a vertex may lie at the very limit, which floats round up") {
+  Scene scene = SoundScene();
+  ShapeOf<Mesh>(scene, 3).positions[0].x = 1e30f;
+  CHECK(Validate(scene).ok());
+  ShapeOf<Mesh>(scene, 3).positions[0].x = std::nextafter(1e30f, 2e30f);
+  CHECK_FALSE(Validate(scene).ok());
+}
+
 TEST_CASE("what is out of range is named") {
   for (const Misuse& misuse : IndexMisuses()) CheckMisuse(misuse);
 }

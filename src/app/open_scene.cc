@@ -89,6 +89,7 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   ReadOptions read;
   read.outside = options.allow_outside ? Outside::kAllowed : Outside::kRefused;
   read.cone_sides = options.cone_sides.value_or(read.cone_sides);
+  read.aspect = options.aspect;
   Result<ReadSceneResult> result = ReadScene(path, read);
   if (!result) return result.error();
   OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings),

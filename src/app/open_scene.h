@@ -23,6 +23,8 @@ struct SceneOptions {
   std::optional<Vec3d> eye, look_at;     // of the scene's first camera
   std::optional<Projection> projection;  // likewise
   std::optional<double> fov;             // likewise, degrees
+  // Of the pictures, width over height, where the command line gives their size. No option itself.
+  std::optional<double> aspect;
 };
 
 void AddSceneOptions(CLI::App& app, SceneOptions& options);

@@ -207,6 +207,9 @@ Status RunRender(const RenderRequest& given) {
   if (request.output == "-") request.output = kStandardOutputPath;
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckCommandLine(request); !sound) return sound;
+  if (request.size) {
+    request.options.aspect = static_cast<double>(request.size->width) / request.size->height;
+  }
   const ProgressStyle style = ChooseProgressStyle(request);
   const Result<OpenedScene> opened = [&] {
     const ReadingNotice notice(style, request.scene);

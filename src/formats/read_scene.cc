@@ -46,10 +46,10 @@ void AddStudio(Scene* scene) {
       Gradient{{0.42, 0.5, 0.62}, scene->settings.background, {0.5, 0.48, 0.46}};
 }
 
-KeyLight Complete(Scene* scene) {
+KeyLight Complete(Scene* scene, double aspect) {
   if (scene->cameras.empty()) {
     const Bounds bounds = BoundsOf(*scene).value_or(Bounds{Vec3d(-1), Vec3d(1)});
-    scene->cameras.push_back(CameraThatFrames(bounds, {0, 1, 0}));
+    scene->cameras.push_back(CameraThatFrames(bounds, {0, 1, 0}, aspect));
   }
   if (!scene->lights.empty()) return KeyLight::kAbsent;
   AddStudio(scene);
@@ -103,7 +103,9 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
     if (!scene) return scene.error();
     KeyLight key_light = KeyLight::kAbsent;
     if (IsModelPath(path)) {
-      key_light = Complete(&scene.value());
+      const Settings& settings = scene.value().settings;
+      const double usual = static_cast<double>(settings.width) / settings.height;
+      key_light = Complete(&scene.value(), options.aspect.value_or(usual));
       scene.value().settings.transfer = FindFormat(path)->model_transfer;
     }
     return ReadSceneResult{std::move(scene).value(), key_light, files.warnings().Lines(),
@@ -124,17 +126,21 @@ void AimStudio(Scene* scene) {
   }
 }
 
-Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up) {
+Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up, double aspect) {
   Camera camera;
   camera.name = "default";
   // Of a model at the very limit neither point lies where no scene may have one.
   const auto within = [](const Vec3d& p) { return glm::clamp(p, -kMaxCoordinate, kMaxCoordinate); };
   camera.look_at = within((bounds.min + bounds.max) * 0.5);
   camera.up = up;
-  constexpr double kFov = 40, kSine = 0.34202014332566873;  // of half of it
+  constexpr double kFov = 40, kSine = 0.34202014332566873,
+                   kTangent = 0.36397023426620234;  // of half
+  // A picture that is higher than wide has the narrower angle across.
+  const double across = aspect * kTangent;
+  const double sine = aspect < 1 ? across / std::sqrt(1 + across * across) : kSine;
   const double radius = std::max(glm::length(bounds.max - bounds.min) * 0.5, 1e-6);
   const Vec3d away = glm::normalize(Vec3d(0.45, 0.35, 1));
-  camera.eye = within(camera.look_at + away * (radius / kSine));
+  camera.eye = within(camera.look_at + away * (radius / sine));
   camera.projection = Perspective{kFov};
   return camera;
 }

@@ -30,8 +30,8 @@ Material PlainMaterial();
 void AimStudio(Scene* scene);
 
 // The camera "default": looks at the middle of the box from the front, a little from the right and
-// above, so that its sphere just fits.
-Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up);
+// above, so that its sphere just fits a picture that is `aspect` times as wide as high.
+Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up, double aspect);
 
 }  // namespace sheaf
 

@@ -29,6 +29,9 @@ struct Range {
 constexpr double kLargest = std::numeric_limits<float>::max();
 constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 constexpr Range kPlace{-kMaxCoordinate, kMaxCoordinate, "a number in [-1e30, 1e30]"};
+// Where a mesh has floats, which round the limit up.
+constexpr double kMostAsFloat = static_cast<double>(static_cast<float>(kMaxCoordinate));
+constexpr Range kVertexPlace{-kMostAsFloat, kMostAsFloat, "a number in [-1e30, 1e30]"};
 constexpr Range kLength{0, kMaxCoordinate, "a number in [0, 1e30]"};
 // By the unit of length: in a scene of tiny numbers light falls off by huge ones.
 constexpr Range kFalloff{0, 1e38, "a number in [0, 1e38]"};
@@ -139,7 +142,7 @@ void Check(const Material& material, FirstFault& fault) {
 
 void CheckMesh(const Mesh& mesh, FirstFault& fault) {
   const std::size_t vertices = mesh.positions.size();
-  fault.PerVertex("positions", mesh.positions, kPlace, vertices);
+  fault.PerVertex("positions", mesh.positions, kVertexPlace, vertices);
   fault.PerVertex("normals", mesh.normals, kAny, vertices);
   fault.PerVertex("uv", mesh.uv, kAny, vertices);
   fault.PerVertex("colours", mesh.colours, kAtLeastZero, vertices);

@@ -9,6 +9,7 @@
 #define SHEAF_SHEAF_FORMATS_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,6 +59,9 @@ inline constexpr int kMaxConeSides = 1024;
 struct ReadOptions {
   Outside outside = Outside::kRefused;
   int cone_sides = 32;  // of the triangles that stand for NFF's cones, [3, kMaxConeSides]
+  // Width over height, > 0, of the pictures that a model without a camera is framed for. By default
+  // that of Settings.
+  std::optional<double> aspect = std::nullopt;
 };
 
 // Whether lights were put into a scene that had none: key, fill and rim.
