@@ -4,6 +4,7 @@
 #include "pixels_over.h"
 #include "same_bits.h"
 #include "sheaf/render.h"
+#include "src/lab/find_thin_walls.h"
 #include "src/scene/transform.h"
 
 namespace sheaf {
@@ -111,6 +112,25 @@ TEST_CASE("a pane may be eight units in the last place thin") {
     CAPTURE(ulps);
     CheckAgainstDouble(Pane(ulps * kUlp), 20);
   }
+}
+
+TEST_CASE("glass that floats cannot tell is found") {
+  CHECK(FindThinWalls(Bubble(4 * kUlp)).empty());
+  CHECK(FindThinWalls(Pane(8 * kUlp)).empty());
+  for (const double ulps : {0.5, 1.0, 2.0}) {
+    CAPTURE(ulps);
+    for (const Scene& scene : {Bubble(ulps * kUlp), Pane(ulps * kUlp)}) {
+      const std::vector<ThinWall> walls = FindThinWalls(scene);
+      REQUIRE(!walls.empty());
+      CHECK(walls[0].thickness == doctest::Approx(ulps * kUlp).epsilon(0.01));
+      CHECK(walls[0].needed > walls[0].thickness);
+      CHECK(walls[0].needed < 8 * kUlp);
+    }
+  }
+  // What lets no light in has no walls.
+  Scene scene = Bubble(kUlp);
+  for (Material& material : scene.materials) material.transmit = Colour(0.0);
+  CHECK(FindThinWalls(scene).empty());
 }
 
 }  // namespace

@@ -312,6 +312,34 @@ TEST_CASE("compare prints each picture as it comes, with a mean") {
   CHECK(json::parse(listed.out)["mean"]["rmse"] == 0.125);
 }
 
+TEST_CASE("pareto charts error and time against place and scale") {
+  const Workspace work;
+  const Outcome outcome =
+      work.Run({"pareto", kScene, "--size", "32x24", "--repetitions", "1", "--moved", "100,1e6",
+                "--scaled", "0.001", "-o", work / "report"});
+  REQUIRE(outcome.code == 0);
+  CHECK(Contains(outcome.out, "moved by 100 "));
+  const json report = json::parse(ReadText(work / "report/front-places.json"));
+  REQUIRE(report["points"].size() == 12);
+  CHECK(report["points"][2]["precision"] == "double");
+  CHECK(report["points"][2]["error"] == 0);  // the reference itself
+  for (const json& point : report["points"]) {
+    CHECK(point["seconds"].get<double>() > 0);
+    if (point["precision"] != "fast") CHECK(point["over"].get<int>() <= 5);
+  }
+  const std::string csv = ReadText(work / "report/front-places.csv");
+  CHECK(LineCount(csv) == 13);
+  CHECK(Contains(csv, "moved,scaled,precision,seconds,over,error"));
+  if (HasProgram("gnuplot")) {
+    CHECK(fs::exists(work / "report/front-places.svg"));
+    CHECK(fs::exists(work / "report/front-places.png"));
+  }
+  for (const std::string wrong : {"", "1,", "-1", "x", "nan"}) {
+    CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--moved", wrong}).code == 2);
+  }
+  CHECK(work.Run({"pareto", kScene, "-o", work / "r", "--scaled", "0"}).code == 2);
+}
+
 TEST_CASE("pareto charts time against error") {
   const Workspace work;
   const Outcome outcome =

@@ -11,6 +11,7 @@
 #include "src/app/standard_output.h"
 #include "src/app/suspect_scene.h"
 #include "src/formats/printable.h"
+#include "src/lab/find_thin_walls.h"
 
 namespace sheaf {
 namespace {
@@ -64,6 +65,21 @@ std::string CheckText(const Json& json) {
   return text;
 }
 
+// Where strict arithmetic cannot tell how thin glass is. No loss, so that --strict lets it pass.
+void WarnOfThinWalls(const Scene& scene, Json& json) {
+  constexpr std::size_t kMost = 3;
+  const std::vector<ThinWall> walls = FindThinWalls(scene);
+  for (std::size_t i = 0; i < walls.size() && i < kMost; ++i) {
+    json["warnings"].push_back(
+        fmt::format("objects[{}]: glass {:.2g} thin, where floats need {:.2g}; --precision double "
+                    "needs less",
+                    walls[i].object, walls[i].thickness, walls[i].needed));
+  }
+  if (walls.size() > kMost) {
+    json["warnings"].push_back(fmt::format("{} more objects of thin glass", walls.size() - kMost));
+  }
+}
+
 void AddCheckOptions(CLI::App& app, CheckRequest& request) {
   AddInputs(app, "SCENE", request.scenes, Presence::kNeeded, "Scenes or models");
   AddSceneOptions(app, request.options);
@@ -89,6 +105,7 @@ Result<ExitCode> RunCheck(const CheckRequest& request) {
     }
     const Status strict = CheckStrict(path, opened.value().warnings, request.options);
     if (!strict) json["error"] = strict.error().message;
+    WarnOfThinWalls(opened.value().scene, json);
     all.push_back(json);
     if (!request.json) {
       const Status written = WriteStandardOutput(CheckText(json));

@@ -10,7 +10,7 @@
 #include "sheaf/target.h"
 #include "src/app/interrupt.h"
 #include "src/app/print_message.h"
-#include "src/app/progress.h"
+#include "src/app/render_timed.h"
 #include "src/formats/printable.h"
 #include "src/lab/picture_metrics.h"
 #include "src/lab/pov_ray.h"
@@ -80,35 +80,18 @@ std::vector<Setting> ListSettings(const RenderOptions& base) {
   return settings;
 }
 
-// Clamped as a display shows it. A highlight far above white would outweigh every visible error.
-Film Shown(Film film) {
-  for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
-  return film;
-}
-
-struct Timed {
-  Film film;
-  double seconds;
-};
-
-Result<Timed> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting) {
+Result<TimedFrame> RenderTimed(const Scene& scene, const Camera& camera, const Setting& setting) {
   RenderOptions options = setting.options;
   const Status chosen = ChooseTarget(setting.target, options);
   if (!chosen) return chosen.error();
-  FrameWatch watch(ProgressStyle::kNone, camera.name, options, 1);
-  RenderStats stats;
-  Result<Film> film = Render(scene, camera, options, &stats, watch.progress());
-  if (!film) return film.error();
-  // The watch wakes ten times a second; a frame may be shorter.
-  if (const Status going = CheckInterrupted(); !going) return going.error();
-  return Timed{Shown(std::move(film).value()), stats.wall_seconds};
+  return RenderTimed(scene, camera, options);
 }
 
 // The error of a picture in two parts: its samples in double against the converged picture, and the
 // picture against its samples in double; otherwise antialiasing would hide the arithmetic.
 Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Setting setting,
                                    const Film& converged) {
-  const Result<Timed> timed = RenderTimed(scene, camera, setting);
+  const Result<TimedFrame> timed = RenderTimed(scene, camera, setting);
   if (!timed) return timed.error();
   ParetoPoint point{setting.target,
                     PrecisionName(setting.options.precision),
@@ -123,7 +106,7 @@ Result<ParetoPoint> MeasureSetting(const Scene& scene, const Camera& camera, Set
   setting.target = UsableTargets().front();
   setting.options.precision = Precision::kDouble;
   setting.options.threads = 0;
-  const Result<Timed> exact = RenderTimed(scene, camera, setting);
+  const Result<TimedFrame> exact = RenderTimed(scene, camera, setting);
   if (!exact) return exact.error();
   point.numeric = RootMeanSquare(exact.value().film, timed.value().film);
   point.sampling = RootMeanSquare(converged, exact.value().film);
@@ -175,7 +158,7 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
   reference.options.threads = 0;
   const std::string name = Printable(camera.name);
   Say(request, fmt::format("{}: the converged picture, {}", name, reference.Name()));
-  const Result<Timed> converged = RenderTimed(scene, camera, reference);
+  const Result<TimedFrame> converged = RenderTimed(scene, camera, reference);
   if (!converged) return converged.error();
   const Film& film = converged.value().film;
 
@@ -202,7 +185,7 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
         points.push_back(point.value());
         add_time(*point.value().seconds);
       } else {
-        const Result<Timed> timed = RenderTimed(scene, camera, setting);
+        const Result<TimedFrame> timed = RenderTimed(scene, camera, setting);
         if (!timed) return timed.error();
         add_time(timed.value().seconds);
       }

@@ -7,6 +7,7 @@
 
 #include "src/app/interrupt.h"
 #include "src/app/measure_pareto.h"
+#include "src/app/measure_places.h"
 #include "src/app/pareto_report.h"
 #include "src/app/pareto_request.h"
 #include "src/app/standard_output.h"
@@ -36,6 +37,30 @@ std::string FrontText(const ParetoRequest& request, std::vector<ParetoPoint> poi
   return text;
 }
 
+// What one camera gave, as text for stdout; the report is in files that start with `stem`.
+Result<std::string> ReportCamera(const ParetoRequest& request, const Scene& scene,
+                                 const Camera& camera, const RenderOptions& base,
+                                 const ParetoTitle& title, const std::string& stem) {
+  Result<std::vector<std::string>> paths = std::vector<std::string>();
+  std::string text;
+  if (request.moved.empty() && request.scaled.empty()) {
+    const auto points = MeasureCamera(request, scene, camera, base, title.repetitions);
+    if (!points) return points.error();
+    paths = WriteParetoReport(title, points.value(), stem);
+    text = FrontText(request, points.value());
+  } else {
+    const auto points = MeasurePlaces(request, scene, camera, base, title.repetitions);
+    if (!points) return points.error();
+    paths = WritePlaceReport(title, points.value(), stem);
+    for (const PlacePoint& point : points.value()) text += PlaceText(point);
+  }
+  if (!paths) return paths.error();
+  for (const std::string& path : paths.value()) {
+    Say(request, fmt::format("wrote {}", PrintablePath(path)));
+  }
+  return text;
+}
+
 Status RunPareto(const ParetoRequest& request) {
   const Result<Scene> scene =
       OpenScene(request.scene, request.options,
@@ -58,8 +83,6 @@ Status RunPareto(const ParetoRequest& request) {
   const int repetitions = request.repetitions.value_or(3);
   CatchInterrupts();
   for (const Camera* camera : cameras.value()) {
-    const auto points = MeasureCamera(request, scene.value(), *camera, base, repetitions);
-    if (!points) return points.error();
     const ParetoTitle title{request.scene,
                             camera->name,
                             base.width,
@@ -69,12 +92,10 @@ Status RunPareto(const ParetoRequest& request) {
                             repetitions};
     const Result<std::string> stem = ExpandPath(request.output + "/{camera}", camera->name);
     if (!stem) return stem.error();
-    const auto paths = WriteParetoReport(title, points.value(), stem.value());
-    if (!paths) return paths.error();
-    const Status written = WriteStandardOutput(FrontText(request, points.value()));
+    const auto text = ReportCamera(request, scene.value(), *camera, base, title, stem.value());
+    if (!text) return text.error();
+    const Status written = WriteStandardOutput(text.value());
     if (!written) return written;
-    for (const std::string& path : paths.value())
-      Say(request, fmt::format("wrote {}", PrintablePath(path)));
   }
   return Done{};
 }

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "sheaf/version.h"
+#include "src/app/draw_chart.h"
 #include "src/app/json_text.h"
 #include "src/core/atomic_file.h"
 #include "src/lab/has_program.h"
@@ -56,24 +56,14 @@ std::string ReportJson(const ParetoTitle& title, const std::vector<ParetoPoint>&
   return JsonText(json);
 }
 
-// Gnuplot takes a text in double quotes with C's escapes.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return quoted + "\"";
-}
-
 // What has a mark of its own on the chart.
 std::string Series(const ParetoPoint& point) {
   return point.precision.empty() ? point.renderer : point.renderer + ", " + point.precision;
 }
 
 // One mark a setting, a colour a series, and the front as a line of steps.
-std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>& points,
-                        const std::string& stem) {
+Status DrawFront(const ParetoTitle& title, const std::vector<ParetoPoint>& points,
+                 const std::string& stem) {
   std::set<std::string> series;
   for (const ParetoPoint& point : points) {
     if (point.seconds) series.insert(Series(point));
@@ -97,7 +87,7 @@ std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>
   for (const std::string& name : series) {
     block(fmt::format("r{}", index), [&](const ParetoPoint& p) { return Series(p) == name; });
     plots += fmt::format(", $r{} with points pt {} ps 0.8 title {}", index, 5 + 2 * (index % 5),
-                         Quoted(name));
+                         GnuplotString(name));
     ++index;
   }
   block("front", [](const ParetoPoint& p) { return p.is_on_front; });
@@ -106,33 +96,12 @@ std::string GnuplotText(const ParetoTitle& title, const std::vector<ParetoPoint>
       "set title {} noenhanced\n"
       "set xlabel \"milliseconds a frame\"\nset ylabel \"error (RMSE)\"\n"
       "set logscale xy\nset grid\nset key outside noenhanced\n",
-      Quoted(fmt::format("{}, {}, {}x{}, {} thread{}",
-                         std::filesystem::path(title.scene).filename().string(), title.camera,
-                         title.width, title.height, title.threads, title.threads == 1 ? "" : "s")));
-  for (const auto& [terminal, ending] : {std::pair("svg size 900,600 background \"white\"", "svg"),
-                                         std::pair("pngcairo size 900,600", "png")}) {
-    fmt::format_to(out, "set terminal {}\nset output {}\n", terminal,
-                   Quoted(stem + ".part." + ending));
-    fmt::format_to(out, "plot $front with steps lw 2 lc rgb \"black\" title \"front\"{}\n", plots);
-  }
-  return text;
-}
-
-// Both pictures, or neither.
-bool DrawChart(const std::string& script, const std::string& stem) {
-  std::FILE* gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
-  if (gnuplot == nullptr) return false;
-  const bool fed = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  const bool drawn = pclose(gnuplot) == 0 && fed;
-  bool moved = drawn;
-  for (const char* ending : {".svg", ".png"}) {
-    std::error_code error;
-    const std::string part = stem + ".part" + ending;
-    if (drawn) std::filesystem::rename(part, stem + ending, error);
-    moved = moved && !error;
-    std::filesystem::remove(part, error);
-  }
-  return moved;
+      GnuplotString(fmt::format(
+          "{}, {}, {}x{}, {} thread{}", std::filesystem::path(title.scene).filename().string(),
+          title.camera, title.width, title.height, title.threads, title.threads == 1 ? "" : "s")));
+  return DrawChart(
+      text, fmt::format("plot $front with steps lw 2 lc rgb \"black\" title \"front\"{}\n", plots),
+      stem);
 }
 
 }  // namespace
@@ -181,9 +150,8 @@ Result<std::vector<std::string>> WriteParetoReport(const ParetoTitle& title,
   const Status json = WriteFileWhole(paths[1], ReportJson(title, points));
   if (!json) return json.error();
   if (!HasProgram("gnuplot")) return paths;
-  if (!DrawChart(GnuplotText(title, points, stem), stem)) {
-    return Error{ErrorKind::kInputOutput, fmt::format("{}.svg: gnuplot could not draw it", stem)};
-  }
+  const Status drawn = DrawFront(title, points, stem);
+  if (!drawn) return drawn.error();
   paths.insert(paths.end(), {stem + ".svg", stem + ".png"});
   return paths;
 }

@@ -9,6 +9,21 @@
 
 namespace sheaf {
 
+namespace {
+
+// Numbers between commas, each in [min, 1e30].
+std::optional<std::vector<double>> ParseNumbers(const std::string& text, double min) {
+  std::vector<double> numbers;
+  for (const std::string& part : SplitAtCommas(text)) {
+    const std::optional<double> number = ParseNumber(part, min, 1e30);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
 void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
   AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
   AddSceneOptions(app, request.options);
@@ -31,6 +46,12 @@ void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
             "Name the cheapest setting of at most this RMSE", parse);
   AddParsed(app, "--time", request.time, "SECONDS", "a number from 0",
             "Name the best setting that takes at most this long", parse);
+  AddParsed(app, "--moved", request.moved, "D[,D]", "distances from 0 to 1e30, between commas",
+            "Error and time where the scene is moved by D, instead of settings",
+            [](const std::string& text) { return ParseNumbers(text, 0); });
+  AddParsed(app, "--scaled", request.scaled, "S[,S]", "factors from 1e-30 to 1e30, between commas",
+            "The same where it is scaled by S",
+            [](const std::string& text) { return ParseNumbers(text, 1e-30); });
   AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
@@ -28,6 +29,8 @@ struct ParetoRequest {
   std::string output;  // a folder; made where it is not there
   std::optional<int> reference_samples, repetitions, threads;
   std::optional<double> error, time;
+  // Other places of the scene: moved by so much, or scaled by so much, each by itself.
+  std::vector<double> moved, scaled;
   bool quiet = false;
 };
 

@@ -1,0 +1,193 @@
+#include "src/app/measure_places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
+
+#include "sheaf/target.h"
+#include "sheaf/version.h"
+#include "src/app/draw_chart.h"
+#include "src/app/json_text.h"
+#include "src/app/render_timed.h"
+#include "src/core/atomic_file.h"
+#include "src/formats/printable.h"
+#include "src/lab/has_program.h"
+#include "src/lab/picture_metrics.h"
+#include "src/lab/rank_statistics.h"
+#include "src/scene/transform.h"
+
+namespace sheaf {
+namespace {
+
+constexpr Precision kPlacePrecisions[] = {Precision::kStrict, Precision::kFast, Precision::kDouble};
+
+struct Place {
+  double moved = 0, scaled = 1;
+};
+
+// Where the scene was made comes first.
+std::vector<Place> ListPlaces(const ParetoRequest& request) {
+  std::vector<Place> places = {{}};
+  for (const double moved : request.moved) places.push_back({moved, 1});
+  for (const double scaled : request.scaled) places.push_back({0, scaled});
+  return places;
+}
+
+// A slanted way off, because one along an axis would leave two coordinates their bits.
+Transform TransformTo(const Place& place) {
+  Transform transform;
+  transform.linear = glm::dmat3(place.scaled);
+  transform.translation = glm::normalize(Vec3d(1, -1, 0.7)) * place.moved;
+  return transform;
+}
+
+// The scene and its one camera, there. A lamp gives as much light as before.
+Result<Scene> Placed(const Scene& scene, const Camera& camera, const Place& place) {
+  Scene placed = scene;
+  placed.cameras = {camera};
+  placed.views.clear();  // which name cameras by number
+  const std::string fault = TransformScene(TransformTo(place), &placed);
+  if (!fault.empty()) return Error{ErrorKind::kScene, fault};
+  for (Light& light : placed.lights) {
+    if (PointLight* lamp = std::get_if<PointLight>(&light.source)) {
+      lamp->falloff.linear /= place.scaled;
+      lamp->falloff.quadratic /= place.scaled * place.scaled;
+    }
+  }
+  return placed;
+}
+
+std::string PlaceName(const PlacePoint& point) {
+  if (point.moved != 0) return fmt::format("moved {:g}", point.moved);
+  return point.scaled == 1 ? "as made" : fmt::format("scaled {:g}", point.scaled);
+}
+
+std::string CsvText(const std::vector<PlacePoint>& points) {
+  std::string text = "moved,scaled,precision,seconds,over,error\n";
+  for (const PlacePoint& p : points) {
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", p.moved, p.scaled, p.precision,
+                   p.seconds, p.over, p.error);
+  }
+  return text;
+}
+
+std::string ReportJson(const ParetoTitle& title, const std::vector<PlacePoint>& points) {
+  nlohmann::ordered_json json = {{"sheaf", kVersion},
+                                 {"scene", title.scene},
+                                 {"camera", title.camera},
+                                 {"width", title.width},
+                                 {"height", title.height},
+                                 {"threads", title.threads},
+                                 {"repetitions", title.repetitions},
+                                 {"points", nlohmann::ordered_json::array()}};
+  for (const PlacePoint& p : points) {
+    json["points"].push_back({{"moved", p.moved},
+                              {"scaled", p.scaled},
+                              {"precision", p.precision},
+                              {"seconds", p.seconds},
+                              {"over", p.over},
+                              {"error", p.error}});
+  }
+  return JsonText(json);
+}
+
+// Pixels above, milliseconds below, a line a precision.
+Status DrawPlaces(const ParetoTitle& title, const std::vector<PlacePoint>& points,
+                  const std::string& stem) {
+  std::string data, above, below;
+  for (const Precision precision : kPlacePrecisions) {
+    const std::string name = PrecisionName(precision);
+    data += fmt::format("${} << END\n", name);
+    for (const PlacePoint& p : points) {
+      if (p.precision != name) continue;
+      data += fmt::format("{} {} {}\n", GnuplotString(PlaceName(p)), p.over, 1e3 * p.seconds);
+    }
+    data += "END\n";
+    const auto line = [&](const char* column) {
+      return fmt::format("${0} using {1}:xtic(1) with linespoints title \"{0}\", ", name, column);
+    };
+    above += line("2");
+    below += line("3");
+  }
+  const std::string text =
+      fmt::format("{}, {}, {}x{}", std::filesystem::path(title.scene).filename().string(),
+                  title.camera, title.width, title.height);
+  const std::string plot = fmt::format(
+      "set multiplot layout 2,1 title {} noenhanced\n"
+      "set yrange [0:*]\nset grid\nset key outside noenhanced\nset xtics noenhanced\n"
+      "set ylabel \"pixels over 1/255\"\nplot {}\n"
+      "set ylabel \"milliseconds a frame\"\nplot {}\nunset multiplot\n",
+      GnuplotString(text), above, below);
+  return DrawChart(data, plot, stem);
+}
+
+}  // namespace
+
+Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, const Scene& scene,
+                                              const Camera& camera, const RenderOptions& base,
+                                              int repetitions) {
+  RenderOptions options = base;
+  options.samples = 1;
+  std::vector<PlacePoint> points;
+  std::vector<std::vector<double>> seconds;
+  Film made;
+  // Round by round over all places, because a machine's clock drifts. The first has the errors.
+  for (int round = 0; round < repetitions; ++round) {
+    Say(request,
+        fmt::format("{}: places, round {} of {}", Printable(camera.name), round + 1, repetitions));
+    std::size_t index = 0;
+    for (const Place& place : ListPlaces(request)) {
+      const Result<Scene> placed = Placed(scene, camera, place);
+      if (!placed) return placed.error();
+      if (made.rgb.empty()) {
+        options.precision = Precision::kDouble;
+        Result<TimedFrame> exact = RenderTimed(placed.value(), placed.value().cameras[0], options);
+        if (!exact) return exact.error();
+        made = std::move(exact.value().film);
+      }
+      for (const Precision precision : kPlacePrecisions) {
+        options.precision = precision;
+        const Result<TimedFrame> timed =
+            RenderTimed(placed.value(), placed.value().cameras[0], options);
+        if (!timed) return timed.error();
+        seconds.resize(std::max(seconds.size(), index + 1));
+        seconds[index++].push_back(timed.value().seconds);
+        if (round > 0) continue;
+        const PictureMetrics metrics = MeasurePictures(made, timed.value().film, Transfer::kLinear);
+        points.push_back(
+            {place.moved, place.scaled, PrecisionName(precision), 0, metrics.over, metrics.rmse});
+      }
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].seconds = Median(seconds[i]);
+  return points;
+}
+
+std::string PlaceText(const PlacePoint& point) {
+  return fmt::format(
+      "moved by {:<8g} scaled by {:<8g} {:7} {:>9.2f} ms  {} pixels over 1/255, {:.2g}\n",
+      point.moved, point.scaled, point.precision, 1e3 * point.seconds, point.over, point.error);
+}
+
+Result<std::vector<std::string>> WritePlaceReport(const ParetoTitle& title,
+                                                  const std::vector<PlacePoint>& points,
+                                                  const std::string& stem) {
+  std::vector<std::string> paths = {stem + "-places.csv", stem + "-places.json"};
+  const Status table = WriteFileWhole(paths[0], CsvText(points));
+  if (!table) return table.error();
+  const Status json = WriteFileWhole(paths[1], ReportJson(title, points));
+  if (!json) return json.error();
+  if (!HasProgram("gnuplot")) return paths;
+  const Status drawn = DrawPlaces(title, points, stem + "-places");
+  if (!drawn) return drawn.error();
+  paths.insert(paths.end(), {stem + "-places.svg", stem + "-places.png"});
+  return paths;
+}
+
+}  // namespace sheaf
