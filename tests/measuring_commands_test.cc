@@ -188,7 +188,9 @@ TEST_CASE("bench tells what it measured on, and judges on the same processor and
     CHECK_MESSAGE(report[key].is_number(), std::string(key));
   }
   // The buffers of a frame are there before a clock starts: it touches hardly a new page.
+#ifndef __SANITIZE_ADDRESS__  // its allocator keeps freed memory from being used again
   CHECK(report["rows"][0]["page_faults"].get<int>() < 40);
+#endif
   CHECK(report["rows"][0]["calibration"].size() == 4);
 
   arguments = bench;
