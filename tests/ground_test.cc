@@ -131,6 +131,12 @@ TEST_CASE("glass that floats cannot tell is found") {
   Scene scene = Bubble(kUlp);
   for (Material& material : scene.materials) material.transmit = Colour(0.0);
   CHECK(FindThinWalls(scene).empty());
+  // Nor has what alpha leaves out, beside glass elsewhere.
+  Scene veil = Pane(kUlp);
+  veil.materials.push_back(veil.materials[0]);
+  veil.materials[0].transmit = Colour(0.0);
+  veil.materials[0].alpha.mode = AlphaMode::kBlend;
+  CHECK(FindThinWalls(veil).empty());
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ class WallFinder {
   // Into the glass of primitive `id` from point `p` on it, against the unit normal `out`.
   void Look(std::uint32_t id, Vec p, Vec out, double offset) {
     const PrimitiveInfo& info = scene_.objects.primitives[id];
-    if ((scene_.materials[info.material].needs & kNeedsTransmission) == 0) return;
+    // What alpha leaves out passes rays too, but bends none.
+    if (!AnyPositive(scene_.materials[info.material].transmit)) return;
     const double needed = (offset + kTwoRoundings) * AbsDot(out, p);
     scalar::Ray<double> ray{p, -out, id | kInsideBit};
     ray.t_max = needed;
