@@ -20,10 +20,10 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
     }
     has_faces = (material.needs & kNeedsNormals) != 0;
   }
-  if (bin.kind == PrimitiveKind::kSphere && (material.needs & kNeedsCoordinates)) {
-    PlaceOnSpheres(bin, SurfaceView<Real>(surfaces.view()), output);
-  }
   const auto view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
+  if (bin.kind == PrimitiveKind::kSphere && (material.needs & kNeedsCoordinates)) {
+    PlaceOnSpheres(bin, view, output);
+  }
   if (material.needs & kNeedsTint) TintSurfaces(material, frame.textures, bin, view, output);
   if (has_faces && material.finish.normals != kNoTexture) BumpSurfaces(frame, bin, view, output);
   if (material.needs & kNeedsTerms) FinishSurfaces(frame, bin, view, output);

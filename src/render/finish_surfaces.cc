@@ -1,37 +1,17 @@
 #include "src/render/finish_surfaces.h"
 
 #include "simd/shading.h"
+#include "src/render/surface_in.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/sphere_coordinates.h"
 
 namespace sheaf {
-namespace {
-
-// As much of a surface as textures ask for.
-template <typename Real>
-scalar::Surface<Real> SurfaceIn(const SurfaceView<Real>& surfaces, std::uint32_t i,
-                                std::uint32_t needs) {
-  scalar::Surface<Real> surface{};
-  surface.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
-  surface.face = {surfaces.face_x[i], surfaces.face_y[i], surfaces.face_z[i]};
-  surface.u = surfaces.u[i];
-  surface.v = surfaces.v[i];
-  if (needs & kNeedsTint) {
-    surface.tint = {surfaces.tint_r[i], surfaces.tint_g[i], surfaces.tint_b[i]};
-  }
-  surface.source = surfaces.source[i];
-  return surface;
-}
-
-}  // namespace
 
 template <typename Real>
 void PlaceOnSpheres(const HitBin& bin, const SurfaceView<Real>& surfaces,
                     const SurfaceOutput<Real>& placed) {
   for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
-    scalar::Surface<Real> surface{};
-    surface.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
-    surface.source = surfaces.source[i];
+    scalar::Surface<Real> surface = SurfaceIn(surfaces, i, 0);
     scalar::PlaceOnSphere(surface);
     placed.u[i] = surface.u;
     placed.v[i] = surface.v;
@@ -62,10 +42,8 @@ void FinishSurfaces(const FrameView<Real>& frame, const HitBin& bin,
   Real* const transmit[3] = {finished.transmit_r, finished.transmit_g, finished.transmit_b};
   for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
     const scalar::Surface<Real> surface = SurfaceIn(surfaces, i, material.needs);
-    // Tints hold the texture's colour already.
-    const Vec3<Real> base =
-        scalar::MultiplyColours(scalar::PatternAt(material, surface), surface.tint);
-    const MaterialData<Real> point = scalar::MaterialAt(material, frame.textures, surface, base);
+    const MaterialData<Real> point =
+        scalar::MaterialAt(material, frame.textures, surface, TintedBase(material, surface));
     for (int c = 0; c < 3; ++c) {
       ambient[c][i] = point.ambient[c];
       emission[c][i] = point.emission[c];

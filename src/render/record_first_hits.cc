@@ -1,7 +1,7 @@
 #include "src/render/record_first_hits.h"
 
 #include "src/core/vec3.h"
-#include "src/scalar/shade.h"
+#include "src/render/surface_in.h"
 
 namespace sheaf {
 
@@ -15,7 +15,9 @@ void FirstHitRecorder<Real>::Record(const HitBin& bin, const HitView<Real>& hits
     first.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
     first.surface = SurfaceIdOf(primitive, frame_.primitives[primitive]);
     first.t = hits.t[bin.batch.ray[i]];
-    if (keeps_albedo_) first.albedo = AlbedoOf(material, surfaces, i);
+    if (keeps_albedo_) {
+      first.albedo = TintedBase(material, SurfaceIn(surfaces, i, material.needs));
+    }
     first.primitive = primitive;
   }
 }
@@ -25,20 +27,6 @@ void FirstHitRecorder<Real>::RecordColours(const ColourView<Real>& sample) {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     hits_[i].colour = {sample.r[i], sample.g[i], sample.b[i]};
   }
-}
-
-// Bits: as scalar::BaseColourAt.
-template <typename Real>
-Vec3<Real> FirstHitRecorder<Real>::AlbedoOf(const MaterialData<Real>& material,
-                                            const SurfaceView<Real>& surfaces,
-                                            std::uint32_t i) const {
-  // Only what the material needs was written.
-  scalar::Surface<Real> surface{};
-  if (material.needs & kNeedsCoordinates) surface.u = surfaces.u[i], surface.v = surfaces.v[i];
-  if (material.needs & kNeedsTint) {
-    surface.tint = {surfaces.tint_r[i], surfaces.tint_g[i], surfaces.tint_b[i]};
-  }
-  return scalar::MultiplyColours(scalar::PatternAt(material, surface), surface.tint);
 }
 
 template class FirstHitRecorder<float>;

@@ -35,9 +35,6 @@ class FirstHitRecorder {
   std::span<const FirstHit<Real>> hits() const { return hits_; }
 
  private:
-  Vec3<Real> AlbedoOf(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                      std::uint32_t i) const;
-
   const FrameView<Real>& frame_;
   const bool keeps_albedo_;
   std::vector<FirstHit<Real>> hits_;
