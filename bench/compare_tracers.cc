@@ -170,8 +170,8 @@ struct EmbreeMethod {
 // Embree's two trees of a scene, and its rays of one batch in each layout.
 class EmbreeSide {
  public:
-  explicit EmbreeSide(const BenchScene& scene)
-      : device_(1),
+  EmbreeSide(const BenchScene& scene, const std::string& isa)
+      : device_(1, isa),
         medium_(device_, scene, RTC_BUILD_QUALITY_MEDIUM),
         high_(device_, scene, RTC_BUILD_QUALITY_HIGH) {
     medium_.Commit();
@@ -297,7 +297,7 @@ void CompareTracers(const BenchScene& scene, const CompareOptions& options,
     fmt::print(stderr, "embree_bench: {}: {}\n", scene.name, geometry.error().message);
     std::exit(EXIT_FAILURE);
   }
-  EmbreeSide embree(scene);
+  EmbreeSide embree(scene, options.embree_isa);
 
   const RayBatch primary = PrimaryRays(scene, options.picture_size);
   Answers hits(primary.count);

@@ -23,6 +23,7 @@ struct CompareOptions {
   std::vector<std::string> targets;  // of Sheaf, usable ones
   std::vector<RayKind> kinds;
   Hints hints = Hints::kGiven;
+  std::string embree_isa = EmbreeIsa();
 };
 
 // Numbers of rays whose answers differ, by reason.

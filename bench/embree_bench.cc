@@ -263,9 +263,13 @@ int Main(int argc, char** argv) {
   app.add_option("--target", targets, "Sheaf's targets; best, or all")->delimiter(',');
   app.add_option("--repetitions", request.compare.repetitions, "medians of this many runs (7)")
       ->check(CLI::Range(1, 1000));
+  auto* build = app.add_flag("--build", builds, "the build table instead");
+  app.add_option("--embree-isa", request.compare.embree_isa,
+                 "what Embree may use: avx512, avx2, avx, sse4.2, sse2; the widest")
+      ->check(CLI::IsMember({"avx512", "avx2", "avx", "sse4.2", "sse2"}))
+      ->excludes(build);
   app.add_flag("--no-hints", no_hints, "do not tell Sheaf how coherent rays are");
   app.add_flag("--quick", is_quick, "256x256 rays and small scenes");
-  auto* build = app.add_flag("--build", builds, "the build table instead");
   auto* growth = app.add_flag("--growth", grows, "primary rays from 1k to 10M triangles, as TSV");
   build->excludes(growth);
   mesh->excludes(growth);
@@ -300,7 +304,8 @@ int Main(int argc, char** argv) {
   } else if (ChooseScenes(request).empty())
     return Fail("no scene has such a name (--list)");
 
-  const std::string embree = fmt::format("{} isa={}", RTC_VERSION_STRING, EmbreeIsa());
+  const std::string embree =
+      fmt::format("{} isa={}", RTC_VERSION_STRING, request.compare.embree_isa);
   fmt::print("# Embree {}; Sheaf on {}; medians of {}{}\n", embree,
              fmt::join(request.compare.targets, ", "), request.compare.repetitions,
              request.table == Table::kBuild ? "" : "; one thread, million rays a second");

@@ -46,8 +46,8 @@ const char* EmbreeIsa() {
 #endif
 }
 
-EmbreeDevice::EmbreeDevice(int threads) {
-  device_ = rtcNewDevice(fmt::format("threads={},isa={}", threads, EmbreeIsa()).c_str());
+EmbreeDevice::EmbreeDevice(int threads, const std::string& isa) {
+  device_ = rtcNewDevice(fmt::format("threads={},isa={}", threads, isa).c_str());
   if (device_ == nullptr) ReportError(nullptr, rtcGetDeviceError(nullptr), "no device");
   rtcSetDeviceErrorFunction(device_, ReportError, nullptr);
   rtcSetDeviceMemoryMonitorFunction(device_, CountBytes, &bytes_held_);

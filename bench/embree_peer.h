@@ -24,7 +24,7 @@ const char* EmbreeIsa();
 class EmbreeDevice {
  public:
   // Ends the program where Embree refuses to run.
-  explicit EmbreeDevice(int threads);
+  explicit EmbreeDevice(int threads, const std::string& isa = EmbreeIsa());
   ~EmbreeDevice();
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
