@@ -142,25 +142,26 @@ HWY_INLINE M TriangleAgainstRays(D d, const Rays& rays, int axis, V ax, V ay, V 
   const IdLanes<D> di;
   using Id = hn::TFromD<IdLanes<D>>;
   const auto ids = hn::Set(di, Id{id});
-  const auto source = hn::And(rays.Sources(d), hn::Set(di, Id{~kInsideBit}));
-  const auto elsewhere = hn::RebindMask(d, hn::Ne(source, ids));
+  const auto elsewhere = [&]() SHEAF_LAMBDA {
+    const auto source = hn::And(rays.Sources(d), hn::Set(di, Id{~kInsideBit}));
+    return hn::RebindMask(d, hn::Ne(source, ids));
+  };
   const auto refine = [&](auto far, V t) SHEAF_LAMBDA {
-    far = hn::And(far, elsewhere);
-    if (hn::AllFalse(d, far)) return t;
     const TrianglePairs<Real> pairs = PairsOf<Real>(
         {{rays.origin(0), 1}, {rays.origin(1), 1}, {rays.origin(2), 1}},
         {{rays.direction(0), 1}, {rays.direction(1), 1}, {rays.direction(2), 1}}, fields);
     return RefineT(d, pairs, MaskBits(d, far), t);
   };
+  const V t_min = rays.TMin(d);
   V t, v, w, det;
   const M inside = HitTriangle(d, ax, ay, az, bx, by, bz, cx, cy, cz, hn::LoadU(d, rays.shear_x()),
                                hn::LoadU(d, rays.shear_y()), hn::LoadU(d, rays.direction(kx)),
                                hn::LoadU(d, rays.direction(ky)), hn::LoadU(d, rays.direction(axis)),
-                               lanes, refine, t, v, w, det);
+                               t_min, lanes, elsewhere, refine, t, v, w, det);
   if (hn::AllFalse(d, inside)) return inside;
   const auto slots = rays.slots();
-  const M within = hn::And(hn::Le(rays.TMin(d), t), hn::Le(t, hn::LoadU(d, slots.t_best)));
-  const M hit = hn::And(hn::And(inside, elsewhere), within);
+  const M within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::LoadU(d, slots.t_best)));
+  const M hit = hn::And(inside, within);
   if (hn::AllFalse(d, hit)) return hit;
   KeepHits<kQuery>(d, slots, hit, t, v, w, det, ids);
   return hit;
@@ -337,10 +338,10 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
   for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
     const auto relative = [&](const Real* at, V o)
                               SHEAF_LAMBDA { return hn::Sub(hn::LoadU(d, at + i), o); };
+    const auto elsewhere = [&]() SHEAF_LAMBDA {
+      return hn::RebindMask(d, hn::Ne(LoadIds(d, ids + i), own_id));
+    };
     const auto refine = [&](auto far, V t) SHEAF_LAMBDA {
-      const auto own = hn::Eq(LoadIds(d, ids + i), own_id);
-      far = hn::AndNot(hn::RebindMask(d, own), far);
-      if (hn::AllFalse(d, far)) return t;
       const auto of_ray = [&](const Real* field) -> PairColumn<Real> { return {field + lane, 0}; };
       const TrianglePairs<Real> pairs = PairsOf<Real>(
           {of_ray(packet.origin[0]), of_ray(packet.origin[1]), of_ray(packet.origin[2])},
@@ -354,8 +355,8 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
         relative(ys + next, oy), relative(zs + next, oz), relative(xs + 2 * next, ox),
         relative(ys + 2 * next, oy), relative(zs + 2 * next, oz), hn::Set(d, packet.shear_x[lane]),
         hn::Set(d, packet.shear_y[lane]), hn::Set(d, packet.direction[kx][lane]),
-        hn::Set(d, packet.direction[ky][lane]), hn::Set(d, packet.direction[kz][lane]),
-        LanesBelow(d, i, n), refine, t, v, w, det);
+        hn::Set(d, packet.direction[ky][lane]), hn::Set(d, packet.direction[kz][lane]), t_min,
+        LanesBelow(d, i, n), elsewhere, refine, t, v, w, det);
     if (hn::AllFalse(d, inside)) continue;
     const auto within = hn::And(hn::Le(t_min, t), hn::Le(t, hn::Set(d, packet.t_best[lane])));
     std::uint32_t hits = MaskBits(d, hn::And(inside, within));
@@ -366,9 +367,8 @@ HWY_INLINE void TrianglesAgainstRay(const TreeView<Real>& tree, std::uint32_t le
     hn::Store(det, d, dets);
     for (; hits != 0; hits &= hits - 1) {
       const int k = std::countr_zero(hits);
-      const std::uint32_t id = ids[i + static_cast<std::uint32_t>(k)];
-      if ((source & ~kInsideBit) == id) continue;
-      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], dets[k], id);
+      KeepHit<kQuery>(packet, lane, ts[k], us[k], vs[k], dets[k],
+                      ids[i + static_cast<std::uint32_t>(k)]);
     }
   }
 }

@@ -35,6 +35,11 @@ inline constexpr Real kExtentRoundoffs = 8 * kRoundoff<Real>;
 // axis, has the hit's t computed wide: in float, t errs relative to the vertices.
 template <typename Real>
 inline constexpr Real kFarReach = 2;
+// But not where t lies below the ray's start by more than this part of the reach: no rounding of a
+// ray that is 2^-11 steep or more carries t so far. A ray that starts on a mesh meets the plane of
+// its own triangle there.
+template <typename Real>
+inline constexpr Real kBehindReach = Real(0x1p-12);
 
 // Where the squared sine of a ray above a triangle's plane is less than this, the plane tells t
 // worse than the edges do: t of the plane errs by wide roundoffs over the sine, t of the edges by

@@ -115,12 +115,15 @@ HWY_NOINLINE V RefineT(D d, const TrianglePairs<Real>& pairs, std::uint32_t lane
 
 // Lanes of `lanes` inside the triangle's edges, with t. All coordinates have their axes in the
 // order kx, ky, kz of the ray's shear; vertices are relative to the origin, (sx, sy) is the shear.
-// refine(far, t) is t with RefineT for the lanes of `far`, which few are.
+// elsewhere() are the lanes whose rays do not start on their triangle: most rays that start on a
+// mesh are inside the edges of one triangle alone, their own. refine(far, t) is t with RefineT for
+// the lanes of `far`, which few are.
 // Writes t, v, w and det only where some lane is inside; t is NaN where the ray misses after all.
-template <class D, class M, class Refine, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+template <class D, class M, class Elsewhere, class Refine, class V = hn::Vec<D>,
+          typename Real = hn::TFromD<D>>
 HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V cz, V sx, V sy,
-                         V dx, V dy, V dz, M lanes, const Refine& refine, V& t, V& v, V& w,
-                         V& det) {
+                         V dx, V dy, V dz, V t_min, M lanes, const Elsewhere& elsewhere,
+                         const Refine& refine, V& t, V& v, V& w, V& det) {
   const V asx = hn::Sub(ax, hn::Mul(sx, az)), asy = hn::Sub(ay, hn::Mul(sy, az));
   const V bsx = hn::Sub(bx, hn::Mul(sx, bz)), bsy = hn::Sub(by, hn::Mul(sy, bz));
   const V csx = hn::Sub(cx, hn::Mul(sx, cz)), csy = hn::Sub(cy, hn::Mul(sy, cz));
@@ -136,6 +139,8 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
   const M has_area = hn::Ge(hn::Abs(sum), hn::Set(d, std::numeric_limits<Real>::min()));
   M inside = hn::And(hn::And(lanes, hn::Or(positive, negative)), has_area);
   if (hn::AllFalse(d, inside)) return inside;
+  inside = hn::And(inside, elsewhere());
+  if (hn::AllFalse(d, inside)) return inside;
   inside = hn::AndNot(hn::Or(IsBeside(d, asx, bsx, csx), IsBeside(d, asy, bsy, csy)), inside);
 
   const V scale = hn::AndNot(sum, hn::Inf(d));  // ScaleOf
@@ -147,7 +152,9 @@ HWY_INLINE M HitTriangle(D d, V ax, V ay, V az, V bx, V by, V bz, V cx, V cy, V 
   if constexpr (std::is_same_v<Real, float>) {
     const V reach = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
     const V met = hn::Mul(hn::Set(d, kFarReach<Real>), hn::Abs(hn::Mul(t, dz)));
-    const M far = hn::And(inside, hn::Gt(reach, met));
+    const V behind = hn::Mul(hn::Sub(t_min, t), hn::Abs(dz));
+    const V most = hn::Mul(hn::Set(d, kBehindReach<Real>), reach);
+    const M far = hn::And(inside, hn::And(hn::Gt(reach, met), hn::Le(behind, most)));
     if (HWY_UNLIKELY(!hn::AllFalse(d, far))) {
       t = refine(far, t);
       outside = hn::And(far, IsOutsideExtent(d, hn::Mul(t, dz), az, bz, cz));

@@ -25,8 +25,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // IntersectTriangle itself, without what scene compilation leaves out.
 std::optional<scalar::TriangleHit<float>> Intersect(const Ray<float>& ray, Vec3<float> a,
                                                     Vec3<float> b, Vec3<float> c) {
-  return scalar::IntersectTriangle(ray.origin, ray.direction, scalar::ShearOf(ray.direction),
-                                   {a, b, c});
+  return scalar::IntersectTriangle(ray.origin, ray.direction, ray.t_min,
+                                   scalar::ShearOf(ray.direction), {a, b, c});
 }
 
 TEST_CASE("collinear vertices are missed") {

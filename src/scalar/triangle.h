@@ -127,12 +127,14 @@ bool IsSteep(W slope, Vec3<W> n, Vec3<W> d) {
 }
 
 // Whether a triangle, of which a, b and c are the distances along the dominant axis, reaches far
-// beyond a hit at t. A mean of vertices that far away errs by roundoffs of them.
+// beyond a hit at t. A mean of vertices that far away errs by roundoffs of them. What lies well
+// below t_min is no hit, whatever rounding does.
 template <typename Real>
-bool ReachesFar(Real t, Real dz, Real a, Real b, Real c) {
+bool ReachesFar(Real t, Real t_min, Real dz, Real a, Real b, Real c) {
   if (std::is_same_v<Wide<Real>, Real>) return false;  // nothing is wider
   const Real reach = std::max(std::max(std::abs(a), std::abs(b)), std::abs(c));
-  return reach > kFarReach<Real> * std::abs(t * dz);
+  return reach > kFarReach<Real> * std::abs(t * dz) &&
+         (t_min - t) * std::abs(dz) <= kBehindReach<Real> * reach;
 }
 
 // t of such a hit: the plane, computed wide, knows better.
@@ -148,7 +150,7 @@ Real RefineT(Real t, Vec3<Real> origin, Vec3<Real> direction, const Vec3<Real> (
 
 template <typename Real>
 SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origin,
-                                                                Vec3<Real> direction,
+                                                                Vec3<Real> direction, Real t_min,
                                                                 const TriangleShear<Real>& shear,
                                                                 const Vec3<Real> (&vertex)[3]) {
   const Vec3<Real> a = vertex[0] - origin, b = vertex[1] - origin, c = vertex[2] - origin;
@@ -174,7 +176,7 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> IntersectTriangle(Vec3<Real> origi
   const Real scale = ScaleOf(det);
   const Real scaled_t = ((u * scale) * a[kz] + (v * scale) * b[kz]) + (w * scale) * c[kz];
   Real t = (scaled_t / (det * scale)) / dz;
-  const bool is_far = ReachesFar(t, dz, a[kz], b[kz], c[kz]);
+  const bool is_far = ReachesFar(t, t_min, dz, a[kz], b[kz], c[kz]);
   if (is_far) t = RefineT(t, origin, direction, vertex);
   // Along kz a mean of the vertices is within their extent already.
   if (IsOutside(ExtentOf(a[kx], b[kx], c[kx]), t * direction[kx]) ||
@@ -201,7 +203,7 @@ SHEAF_INLINE std::optional<TriangleHit<Real>> HitTriangle(const Ray<Real>& ray,
   if ((ray.source & ~kInsideBit) == triangles.id[i]) return std::nullopt;
   const Vec3<Real> vertices[3] = {TriangleVertex(triangles, i, 0), TriangleVertex(triangles, i, 1),
                                   TriangleVertex(triangles, i, 2)};
-  const auto hit = IntersectTriangle(ray.origin, ray.direction, shear, vertices);
+  const auto hit = IntersectTriangle(ray.origin, ray.direction, ray.t_min, shear, vertices);
   if (!hit || !(ray.t_min <= hit->t && hit->t <= ray.t_max)) return std::nullopt;
   return hit;
 }
