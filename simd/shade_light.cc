@@ -15,7 +15,7 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 template <typename Real>
 void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
                      const SurfaceView<Real>& surfaces, const IncidenceView<Real>& incidence,
-                     const std::uint32_t* lit, const Real* shares, std::uint32_t count,
+                     const std::uint32_t* lit, const ColourView<Real>& shares, std::uint32_t count,
                      const ColourOutput<Real>& colours) {
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
@@ -53,16 +53,16 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     }
     V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
     LoadBaseColour(d, material, surfaces, i, r, g, b);
-    const auto add = [&](int channel, V base, Real* HWY_RESTRICT sum) HWY_ATTR {
+    const auto add = [&](int channel, V base, const Real* share, Real* HWY_RESTRICT sum) HWY_ATTR {
       const V light_here = hn::Mul(hn::Set(d, light.rgb[channel]), attenuation);
       V added = hn::Mul(light_here, hn::Add(hn::Mul(base, diffuse), highlight));
-      if (shares) added = hn::Mul(added, hn::LoadU(d, shares + i));
+      if (share) added = hn::Mul(added, hn::LoadU(d, share + i));
       const V before = hn::LoadU(d, sum + i);
       hn::StoreU(hn::IfThenElse(lanes, hn::Add(before, added), before), d, sum + i);
     };
-    add(0, r, colours.r);
-    add(1, g, colours.g);
-    add(2, b, colours.b);
+    add(0, r, shares.r, colours.r);
+    add(1, g, shares.g, colours.g);
+    add(2, b, shares.b, colours.b);
   }
 }
 SHEAF_NAME_KERNELS(ShadeLight);

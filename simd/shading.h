@@ -51,7 +51,10 @@ struct MaterialData {
   Real emission[3];       // added as it is
   Real kd, ks, shininess;
   Real reflect[3], transmit[3];
+  Real passes[3];  // of a light behind: `transmit`, or 0 where shadows are opaque
   Real ior;
+  bool attenuates;  // whether light is taken inside
+  Real attenuation[3], attenuation_distance;
   FinishData<Real> finish;
 };
 
@@ -84,6 +87,12 @@ constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
          (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
          (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
          (transmits ? kNeedsTransmission : 0);
+}
+
+// Whether some of a light goes on behind the surface.
+template <typename Real>
+constexpr bool LetsLightPass(const MaterialData<Real>& material) {
+  return material.finish.alpha != AlphaUse::kOpaque || AnyPositive(material.passes);
 }
 
 // How a texture goes on beyond the unit interval of a surface coordinate.

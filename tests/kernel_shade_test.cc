@@ -289,8 +289,8 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
       REQUIRE(shadows == facing);
       // Every third surface that faces the light is in shadow.
       for (std::uint32_t i = 0; i < count; i += 3) faces[i] = 0;
-      kernels.shade_light(light, material, surfaces.view(), incidences.view(), faces.data(),
-                          nullptr, count, colours.output());
+      kernels.shade_light(light, material, surfaces.view(), incidences.view(), faces.data(), {},
+                          count, colours.output());
 
       std::uint32_t ray = 0;
       for (std::uint32_t i = 0; i < count; ++i) {

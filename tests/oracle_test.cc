@@ -384,7 +384,7 @@ void MeasureHighlights(const Kernels<Real>& kernels, Measured& measured) {
       meets.x[i] = to_light.x, meets.y[i] = to_light.y, meets.z[i] = to_light.z;
       meets.cosine[i] = 0, meets.falloff[i] = 1;  // the first is for diffuse light
     }
-    kernels.shade_light(light, material, surfaces.view(), incidence.view(), lit.data(), nullptr,
+    kernels.shade_light(light, material, surfaces.view(), incidence.view(), lit.data(), {},
                         kRaysEach, colours.output());
     for (std::uint32_t i = 0; i < kRaysEach; ++i) {
       measured.highlight.Add(std::abs(static_cast<double>(colours.view().r[i]) - exact[i]));

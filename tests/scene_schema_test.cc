@@ -137,12 +137,14 @@ json CompleteScene() {
   return json::parse(R"({
     "$schema": "sheaf.schema.json",
     "settings": {"size": [64, 48], "samples": 4, "max_depth": 5, "background": [0.1, 0.2, 0.3],
-                 "ambient": 0.5, "exposure": 0.5, "srgb": true,
+                 "ambient": 0.5, "exposure": 0.5, "srgb": true, "ev": 1.5, "tone": "filmic",
+                 "shadows": "opaque",
                  "environment": {"gradient": {"zenith": 1, "horizon": [1, 1, 0.5], "nadir": 0}}},
     "materials": [
       {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3]}},
        "ambient": 0.1, "kd": 0.5, "ks": 0.5, "shininess": 10, "reflect": 0.5,
-       "transmit": [0.1, 0.2, 0.3], "ior": 1.5},
+       "transmit": [0.1, 0.2, 0.3], "ior": 1.5, "attenuation": [0.5, 1, 1],
+       "attenuation_distance": 2},
       {"name": "plain", "base_colour": [1, 1, 1], "emission": 0.5},
       {"name": "picture", "base_colour": {"texture": {"image": "schema-texture.png",
        "wrap": ["mirror", "clamp"], "filter": "nearest", "srgb": false, "factor": 0.5,

@@ -9,6 +9,7 @@
 
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
+#include "src/app/choose_look.h"
 #include "src/app/open_scene.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/format_table.h"
@@ -28,7 +29,16 @@ struct ConvertRequest {
   std::string input, output;
   std::optional<int> bits;
   std::string transfer;  // empty: keep
+  LookOptions look;
 };
+
+// The first option that only pictures take; null where there is none.
+const char* GivenPictureOption(const ConvertRequest& request) {
+  if (request.bits) return "--bits";
+  if (!request.transfer.empty()) return "--transfer";
+  if (request.look.exposure) return "--exposure";
+  return request.look.tone.empty() ? nullptr : "--tone";
+}
 
 // ---- Scenes ----
 
@@ -113,9 +123,9 @@ Status WriteEnvironment(const std::string& output, Scene* scene) {
 }
 
 Status ConvertScene(const ConvertRequest& request) {
-  if (request.bits || !request.transfer.empty()) {
-    return Usage(fmt::format("{}: for pictures, and {} is a scene",
-                             request.bits ? "--bits" : "--transfer", PrintablePath(request.input)));
+  if (const char* option = GivenPictureOption(request)) {
+    return Usage(
+        fmt::format("{}: for pictures, and {} is a scene", option, PrintablePath(request.input)));
   }
   if (!IsScenePath(request.output) || IsModelPath(request.output)) {
     return Usage(fmt::format("-o {}: a scene becomes scene JSON, whose name ends in {}",
@@ -163,6 +173,7 @@ Status ConvertPicture(const ConvertRequest& request) {
         fmt::format("{}: for scenes, and {} is a picture", *option, PrintablePath(request.input)));
   }
   if (const Status known = CheckPicturePath(request.output); !known) return known;
+  if (const Status shown = CheckLook(request.look, request.output); !shown) return shown;
   if (request.bits) {
     if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
   }
@@ -184,13 +195,16 @@ Status ConvertPicture(const ConvertRequest& request) {
   const bool keeps_bits = is_same_kind && CheckPictureBits(request.output, picture.bits).ok();
   spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
   if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
-  if (keeps && picture.is_display && !HoldsFloats(request.output)) {
+  const bool is_developed = request.look.exposure || !request.look.tone.empty();
+  if (keeps && picture.is_display && !HoldsFloats(request.output) && !is_developed) {
     // A .png that says nothing of its transfer makes one that says nothing.
     const bool is_known = picture.is_srgb || picture.is_linear;
     spec.values = is_known ? Values::kEncoded : Values::kNumbers;
   } else {
     DecodeLight(picture);
   }
+  if (request.look.exposure) spec.ev = request.look.exposure->ev.value_or(MeterExposure(film));
+  if (request.look.tone == "filmic") spec.tone = Tone::kFilmic;
   if (HoldsLayers(request.output)) spec.layers = film.held_layers();
   return WritePicture(film, spec, request.output);
 }
@@ -201,6 +215,7 @@ void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
   AddBits(app, request.bits);
   AddChoice(app, "--transfer", request.transfer, {"keep", "linear", "srgb"},
             "How a .png encodes light; keep: as the input does, or linear");
+  AddLookOptions(app, request.look);
   AddSceneOptions(app, request.options);
 }
 

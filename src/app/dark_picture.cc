@@ -9,8 +9,10 @@
 #include <optional>
 #include <variant>
 
+#include "src/app/choose_look.h"
 #include "src/formats/printable.h"
 #include "src/scene/bounds.h"
+#include "src/scene/develop.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -19,18 +21,11 @@ namespace {
 constexpr int kLookoutSide = 64;  // pixels
 
 // A small picture of what is in view, by the numbers of objects.
-Result<Film> LookOut(const Scene& scene, const Camera& camera, RenderOptions options) {
-  const int side = std::max(options.width, options.height);
-  options.width = std::max(1, options.width * kLookoutSide / side);
-  options.height = std::max(1, options.height * kLookoutSide / side);
-  options.crop.reset();
-  options.samples = 1;
-  options.contrast.reset();
-  options.max_depth = 0;
-  options.timing = Timing::kOff;
-  options.layers = {};
-  options.layers.Add(Layer::kId);
-  return Render(scene, camera, options);
+Result<Film> LookOut(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+  RenderOptions small = SmallPicture(options, kLookoutSide);
+  small.max_depth = 0;
+  small.layers.Add(Layer::kId);
+  return Render(scene, camera, small);
 }
 
 bool IsInside(const Object& object, const Vec3d& point) {
@@ -44,9 +39,10 @@ bool IsInside(const Object& object, const Vec3d& point) {
 
 }  // namespace
 
-DarkPicture::DarkPicture(Transfer transfer)
-    : least_shown_(
-          static_cast<float>(transfer == Transfer::kSrgb ? SrgbDecode(0.5 / 255) : 0.5 / 255)) {}
+DarkPicture::DarkPicture(Transfer transfer, double ev)
+    : least_shown_(static_cast<float>(
+          (transfer == Transfer::kSrgb ? SrgbDecode(0.5 / 255) : 0.5 / 255) / ExposureFactor(ev))) {
+}
 
 void DarkPicture::AddRows(const Film& rows) {
   if (!has_first_ && !rows.rgb.empty()) std::copy_n(rows.rgb.begin(), 3, first_);

@@ -15,8 +15,8 @@ namespace sheaf {
 // and the first that shows, so that a picture which shows something costs nothing.
 class DarkPicture {
  public:
-  // `transfer` decides what is still shown.
-  explicit DarkPicture(Transfer transfer);
+  // `transfer` and `ev`, in stops, decide what is still shown.
+  DarkPicture(Transfer transfer, double ev);
 
   void AddRows(const Film& rows);
 

@@ -12,7 +12,7 @@ namespace {
 
 // What `sheaf merge` compares to see that parts belong to one picture. It names the camera's place,
 // because the command line may have moved the camera.
-std::string SettingsText(const RenderOptions& options, const Camera& camera) {
+std::string SettingsText(const RenderOptions& options, const Camera& camera, const Look& look) {
   const Vec3d& eye = camera.eye;
   const Vec3d& look_at = camera.look_at;
   const bool perspective = std::holds_alternative<Perspective>(camera.projection);
@@ -22,11 +22,13 @@ std::string SettingsText(const RenderOptions& options, const Camera& camera) {
                                                                   : kind.name;
   return fmt::format(
       "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
-      "eye {} {} {}, look at {} {} {}, {} {}",
+      "eye {} {} {}, look at {} {} {}, {} {}{}{}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
       options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
-      eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection));
+      eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),
+      look.ev != 0 ? fmt::format(", {:.3g} stops", look.ev) : "",
+      look.tone == Tone::kFilmic ? ", filmic" : "");
 }
 
 }  // namespace
@@ -39,7 +41,9 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
   spec.bits = bits.value_or(0);
   spec.metadata = {{"Scene", scene_path},
                    {"Camera", frame.camera->name},
-                   {"Settings", SettingsText(options, *frame.camera)}};
+                   {"Settings", SettingsText(options, *frame.camera, frame.look)}};
+  spec.ev = frame.look.ev;
+  spec.tone = frame.look.tone;
   spec.format = frame.format;
   if (HoldsLayers(FormatPath(frame.path, frame.format))) spec.layers = options.layers;
   Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);
@@ -49,6 +53,8 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
     if (layer == Layer::kDepth) writer.far_ = FarthestDepth(scene, *frame.camera);
     if (layer == Layer::kHeat) continue;  // known when all tiles are
     PictureSpec beside = spec;            // no format: such files go by their endings
+    beside.ev = 0;
+    beside.tone = Tone::kLinear;
     beside.metadata.back().second += fmt::format(", layer {}", LayerName(layer));
     if (layer != Layer::kAlbedo) beside.values = Values::kNumbers;
     Result<PictureWriter> created = PictureWriter::Create(path, beside);

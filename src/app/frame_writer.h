@@ -11,6 +11,7 @@
 #include "sheaf/film.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
+#include "src/app/choose_look.h"
 #include "src/app/layer_picture.h"
 #include "src/formats/picture.h"
 
@@ -22,6 +23,7 @@ struct Frame {
   std::string path;
   std::string format;  // what the path has to end in, without the dot; empty: it does
   std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
+  Look look = {};                                     // of a picture of bytes
 };
 
 // The picture of a frame, and its layers where they have files of their own.

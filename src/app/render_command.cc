@@ -46,6 +46,7 @@ Status CheckFormat(const RenderRequest& request) {
         fmt::format("--aov, --format {}: has no layers in it, and no path for files beside it",
                     request.format));
   }
+  if (const Status shown = CheckLook(request.look, named); !shown) return shown;
   return request.bits ? CheckPictureBits(named, *request.bits) : Status(Done{});
 }
 
@@ -157,18 +158,23 @@ std::uint64_t PixelCount(const PixelSize& size) {
   return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
 }
 
-Result<FrameRecord> RenderFrame(const RenderRequest& request, const Scene& scene,
-                                const Frame& frame, const RenderOptions& options,
-                                ProgressStyle style, std::string label) {
+Result<FrameRecord> RenderFrame(const RenderRequest& request, const Scene& scene, Frame frame,
+                                const RenderOptions& options, ProgressStyle style,
+                                std::string label) {
   const PixelSize size = PictureSize(options);
   FrameRecord record{frame.camera->name, frame.path, options, {}};
+  if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
+    const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
+    if (!look) return look.error();
+    frame.look = look.value();
+  }
   // Before the first ray: what cannot be written costs no rendering.
   Result<FrameWriter> writer =
       FrameWriter::Create(scene, frame, options, request.bits, request.scene);
   if (!writer) return writer.error();
   FrameWatch watch(style, std::move(label), options, PixelCount(size));
   HeatPicture heat(options);
-  DarkPicture dark(scene.settings.transfer);
+  DarkPicture dark(scene.settings.transfer, frame.look.ev);
   const RowSink write = [&](const Film& rows) {
     dark.AddRows(rows);
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);

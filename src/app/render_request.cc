@@ -49,6 +49,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   AddParsed(app, "--aov", request.layers, "LAYER[,LAYER]",
             "a list of depth, normal, albedo, id, heat", layers.c_str(), &ParseLayers);
   AddBits(app, request.bits);
+  AddLookOptions(app, request.look);
   AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
   AddParsed(app, "--tile", request.part, "I/N",
             "a part like 2/8 (--tile-size is for pixels a side)", "Render part I of N alone",

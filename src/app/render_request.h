@@ -7,6 +7,7 @@
 
 #include "sheaf/render.h"
 #include "src/app/choose.h"
+#include "src/app/choose_look.h"
 #include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
 
@@ -36,6 +37,7 @@ struct RenderRequest {
   std::optional<int> threads, bits, tile_size;
   std::optional<PicturePart> part;
   std::optional<PixelRect> crop;
+  LookOptions look;
   Layers layers;  // of --aov
   std::string progress = "auto";
   bool quiet = false;

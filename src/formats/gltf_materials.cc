@@ -119,6 +119,16 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   } else {
     material.ior = 1.5;
   }
+  // Without a thickness it is the thin wall of a bubble.
+  const auto* volume = FindExtension(from.extensions, "KHR_materials_volume");
+  if (volume != nullptr && NumberIn(*volume, "thicknessFactor", 0) > 0) {
+    const double distance = NumberIn(*volume, "attenuationDistance", 0);
+    if (distance > 0 && distance <= kMaxCoordinate) {
+      NumbersIn(*volume, "attenuationColor", &material.attenuation);
+      material.attenuation = glm::clamp(material.attenuation, 0.0, 1.0);
+      material.attenuation_distance = distance;
+    }
+  }
   double glow = 1;
   if (const auto* strength = FindExtension(extensions, "KHR_materials_emissive_strength")) {
     glow = NumberIn(*strength, "emissiveStrength", 1);

@@ -219,6 +219,8 @@ bool GltfNodes::AddLight(const tinygltf::Node& node, const std::string& place,
     return document_.Fail(place, "the transform leaves no direction");
   }
   if (!ReadSource(from, light_place, transform.translation, direction, &light)) return false;
+  // Such numbers are those of lamps and suns: a picture needs an exposure.
+  scene_.settings.ev.reset();
   scene_.lights.push_back(light);
   return true;
 }

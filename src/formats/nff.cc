@@ -31,6 +31,7 @@ class NffReader {
     scene_.settings.ambient = Colour(0.0);
     // His counts stop at five levels, the eye's rays being the first.
     scene_.settings.max_depth = 4;
+    scene_.settings.shadows = Shadows::kOpaque;
     while (!error_ && scanner_.NextLine()) {
       const std::string_view word = scanner_.Word();
       if (!word.empty() && word.front() != '#') ReadEntity(word);

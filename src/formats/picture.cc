@@ -7,6 +7,7 @@
 
 #include "src/formats/format_table.h"
 #include "src/formats/printable.h"
+#include "src/scene/develop.h"
 
 namespace sheaf {
 namespace {
@@ -70,21 +71,27 @@ Result<PictureWriter> PictureWriter::Create(const std::string& path, const Pictu
   }
   NewEncoder encoder = row->create_encoder(path, spec);
   if (!encoder) return encoder.error();
-  return PictureWriter(std::move(encoder).value());
+  const bool is_developed = !row->format.holds_floats && spec.values == Values::kLight;
+  return is_developed ? PictureWriter(std::move(encoder).value(), spec.ev, spec.tone)
+                      : PictureWriter(std::move(encoder).value(), 0, Tone::kLinear);
 }
 
 namespace {
 Error MovedFrom() { return {ErrorKind::kUsage, "a picture writer that was moved from"}; }
 }  // namespace
 
-PictureWriter::PictureWriter(std::unique_ptr<PictureEncoder> encoder)
-    : encoder_(std::move(encoder)) {}
+PictureWriter::PictureWriter(std::unique_ptr<PictureEncoder> encoder, double ev, Tone tone)
+    : encoder_(std::move(encoder)), ev_(ev), tone_(tone) {}
 PictureWriter::PictureWriter(PictureWriter&&) noexcept = default;
 PictureWriter& PictureWriter::operator=(PictureWriter&&) noexcept = default;
 PictureWriter::~PictureWriter() = default;
 
 Status PictureWriter::WriteRows(const Film& rows) {
-  return encoder_ ? encoder_->WriteRows(rows) : MovedFrom();
+  if (!encoder_) return MovedFrom();
+  if (ev_ == 0 && tone_ == Tone::kLinear) return encoder_->WriteRows(rows);
+  Film developed = rows;
+  Develop(ev_, tone_, developed);
+  return encoder_->WriteRows(developed);
 }
 Status PictureWriter::Finish() { return encoder_ ? encoder_->Finish() : MovedFrom(); }
 

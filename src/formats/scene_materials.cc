@@ -16,6 +16,7 @@ namespace {
 
 constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
 constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
+constexpr NumberRange kDistance{1e-30, kMaxCoordinate, "a number in [1e-30, 1e30]"};
 constexpr NumberRange kUnit{0.0, 1.0, "a number in [0, 1]"};
 constexpr NumberRange kPlacing{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kCells{kSmallestPositive, 65536.0, "a number in (0, 65536]"};
@@ -38,6 +39,8 @@ constexpr Parameter kParameters[] = {
     {"reflect", &Material::reflect, kFraction},
     {"transmit", &Material::transmit, kFraction},
     {"ior", &Material::ior, kIor},
+    {"attenuation", &Material::attenuation, kFraction, Written::kUnlessDefault},
+    {"attenuation_distance", &Material::attenuation_distance, kDistance, Written::kUnlessDefault},
 };
 
 void ReadParameter(const JsonCursor& value, const Parameter& parameter, Material* material) {

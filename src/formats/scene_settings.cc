@@ -19,6 +19,7 @@ constexpr NumberRange kImageSide{1.0, kMaxImageSide, "an integer in [1, 65536]"}
 constexpr NumberRange kSampleCount{1.0, kMaxSamples, "an integer in [1, 65536]"};
 constexpr NumberRange kDepthLimit{0.0, kMaxDepth, "an integer in [0, 1000000]"};
 constexpr NumberRange kRotation{-1e6, 1e6, "a number in [-1e6, 1e6]"};
+constexpr NumberRange kStops{-kMaxEv, kMaxEv, "a number in [-64, 64], or \"auto\""};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
 
 // Nothing where the picture cannot be had, which is an error.
@@ -79,6 +80,16 @@ void ReadEnvironment(const JsonCursor& value, ColourSource* source,
   object.Finish();
 }
 
+// Whether the second of two words stands there; an error where neither does.
+bool IsOther(const JsonCursor& value, const char* usual, const char* other) {
+  std::string word;
+  if (!value.ReadString(&word)) return false;
+  if (word != usual && word != other) {
+    value.Fail(fmt::format("expected \"{}\" or \"{}\"", usual, other));
+  }
+  return word == other;
+}
+
 Json EnvironmentJson(const Environment& environment) {
   return Match(
       environment,
@@ -123,6 +134,17 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   Colour ambient;
   if (ReadColour(object.Optional("ambient"), kStrength, &ambient)) settings.ambient = ambient;
   object.Optional("exposure").Read(kExposure, &settings.exposure);
+  const JsonCursor ev = object.Optional("ev");
+  if (ev.Is(JsonKind::kString)) {
+    if (ev.text() != "auto") ev.Fail("expected a number or \"auto\"");
+    settings.ev.reset();
+  } else {
+    ev.Read(kStops, &*settings.ev);
+  }
+  if (IsOther(object.Optional("tone"), "linear", "filmic")) settings.tone = Tone::kFilmic;
+  if (IsOther(object.Optional("shadows"), "through", "opaque")) {
+    settings.shadows = Shadows::kOpaque;
+  }
   object.Finish();
   return settings;
 }
@@ -135,6 +157,9 @@ Json SettingsJson(const Settings& settings) {
                {"exposure", settings.exposure}};
   if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
+  if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");
+  if (settings.tone == Tone::kFilmic) json["tone"] = "filmic";
+  if (settings.shadows == Shadows::kOpaque) json["shadows"] = "opaque";
   json["srgb"] = settings.transfer == Transfer::kSrgb ? Json("pictures") : Json(false);
   return json;
 }

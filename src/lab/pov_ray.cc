@@ -106,15 +106,17 @@ void WriteLight(Out out, const Scene& scene, const Light& light) {
   fmt::format_to(out, "{} }}\n", light.casts_shadows ? "" : " shadowless");
 }
 
-void WriteSphere(Out out, const Sphere& sphere, const Material& material, std::uint32_t index) {
+void WriteSphere(Out out, const Scene& scene, const Sphere& sphere, std::uint32_t index) {
+  const Material& material = scene.materials[index];
   const std::string center = Vector(sphere.center);
   fmt::format_to(out, "sphere {{ {}, {} texture {{ T{} }}", center, sphere.radius, index);
   if (Transmits(material)) {
-    // Glass casts an opaque shadow: an opaque core that shadow rays alone see.
-    fmt::format_to(out,
-                   " interior {{ ior {} }} }}\n"
-                   "sphere {{ {}, {} no_image no_reflection pigment {{ rgb 0 }}",
-                   material.ior, center, 0.9999 * sphere.radius);
+    fmt::format_to(out, " interior {{ ior {} }}", material.ior);
+    // An opaque shadow is that of an opaque core which shadow rays alone see.
+    if (scene.settings.shadows == Shadows::kOpaque) {
+      fmt::format_to(out, " }}\nsphere {{ {}, {} no_image no_reflection pigment {{ rgb 0 }}",
+                     center, 0.9999 * sphere.radius);
+    }
   }
   fmt::format_to(out, " }}\n");
 }
@@ -230,7 +232,7 @@ std::string PovText(const Scene& scene, const Camera& camera) {
     const Material& material = scene.materials[object.material];
     Match(
         object.shape,
-        [&](const Sphere& sphere) { WriteSphere(out, sphere, material, object.material); },
+        [&](const Sphere& sphere) { WriteSphere(out, scene, sphere, object.material); },
         [&](const Disk& disk) {
           fmt::format_to(out, "disc {{ {}, {}, {} texture {{ T{} }} }}\n", Vector(disk.center),
                          Vector(disk.normal), disk.radius, object.material);

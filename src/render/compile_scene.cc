@@ -45,7 +45,8 @@ void StoreBaseColour(BaseColour kind, const Checker& checker, MaterialData<Real>
 }
 
 template <typename Real>
-MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambient) {
+MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambient,
+                                   const ScenePlacement& placement) {
   MaterialData<Real> data{};
   Match(
       material.base_colour,
@@ -64,6 +65,9 @@ MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambie
   Store(material.reflect, data.reflect);
   Store(material.transmit, data.transmit);
   data.ior = static_cast<Real>(material.ior);
+  data.attenuates = material.attenuation != Colour(1.0);
+  Store(material.attenuation, data.attenuation);
+  data.attenuation_distance = static_cast<Real>(placement.Length(material.attenuation_distance));
   return data;
 }
 
@@ -301,11 +305,12 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
   const Colour ambient = AmbientLightOf(scene.settings);
   for (const Material& material : scene.materials) {
-    MaterialData<Real> data = CompileMaterial<Real>(material, ambient);
+    MaterialData<Real> data = CompileMaterial<Real>(material, ambient, placement);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
       data.texture = CompileTexture(*texture, compiled);
     }
     CompileFinish(material, compiled, data);
+    if (scene.settings.shadows == Shadows::kThrough) Store(material.transmit, data.passes);
     data.needs = NeedsOf(data);
     compiled.materials.push_back(data);
   }

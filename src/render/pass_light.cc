@@ -26,17 +26,24 @@ void StoreRay(const scalar::Ray<Real>& ray, const RayOutput<Real>& rays, std::ui
   rays.source[i] = ray.source;
 }
 
+template <typename Real>
+void StoreShare(Vec3<Real> share, const ColourOutput<Real>& shares, std::uint32_t i) {
+  shares.r[i] = share.x;
+  shares.g[i] = share.y;
+  shares.b[i] = share.z;
+}
+
 }  // namespace
 
 template <typename Real>
 void LightPasser<Real>::Pass(const RayView<Real>& rays, Real t_max, const std::uint32_t* occluded,
-                             std::uint32_t count, Real* shares) {
+                             std::uint32_t count, const ColourOutput<Real>& shares) {
   rays_.Reserve(count);
   hits_.Reserve(count);
   ray_of_.clear();
   const RayOutput<Real> next = rays_.output();
   for (std::uint32_t i = 0; i < count; ++i) {
-    shares[i] = 1;
+    shares.r[i] = shares.g[i] = shares.b[i] = 1;
     if (!occluded[i]) continue;
     StoreRay(RayIn(rays, i, t_max), next, static_cast<std::uint32_t>(ray_of_.size()));
     ray_of_.push_back(i);
@@ -50,20 +57,19 @@ void LightPasser<Real>::Pass(const RayView<Real>& rays, Real t_max, const std::u
     const HitView<Real> hits = hits_.view();
     std::uint32_t kept = 0;
     for (std::uint32_t k = 0; k < left; ++k) {
-      if (hits.primitive[k] == kNoPrimitive) continue;
       const scalar::Hit<Real> hit = {hits.t[k], hits.primitive[k], hits.u[k], hits.v[k]};
       scalar::Ray<Real> ray = RayIn(rays_.view(), k, t_max);
-      Real& share = shares[ray_of_[k]];
-      if (!scalar::PassSurface(frame_, hit, ray, share)) {
-        share = 0;
-        continue;
-      }
+      const std::uint32_t i = ray_of_[k];
+      Vec3<Real> share = {shares.r[i], shares.g[i], shares.b[i]};
+      const scalar::Passing passing = scalar::PassOn(frame_, hit, ray, share);
+      StoreShare(passing == scalar::Passing::kBlocked ? Vec3<Real>{0, 0, 0} : share, shares, i);
+      if (passing != scalar::Passing::kGoesOn) continue;
       StoreRay(ray, next, kept);
-      ray_of_[kept++] = ray_of_[k];
+      ray_of_[kept++] = i;
     }
     ray_of_.resize(kept);
   }
-  for (const std::uint32_t i : ray_of_) shares[i] = 0;
+  for (const std::uint32_t i : ray_of_) StoreShare<Real>({0, 0, 0}, shares, i);
 }
 
 template class LightPasser<float>;

@@ -1,4 +1,4 @@
-// The shadow rays that go on through surfaces which are not all there.
+// The shadow rays that go on through surfaces which are not all there, or which transmit.
 #ifndef SHEAF_RENDER_PASS_LIGHT_H_
 #define SHEAF_RENDER_PASS_LIGHT_H_
 
@@ -23,7 +23,7 @@ class LightPasser {
   // the surfaces on the way let pass. Bits: as sheaf::scalar::LightShare. One round of tracing a
   // surface on the way; what each lets pass is found ray by ray.
   void Pass(const RayView<Real>& rays, Real t_max, const std::uint32_t* occluded,
-            std::uint32_t count, Real* shares);
+            std::uint32_t count, const ColourOutput<Real>& shares);
 
   std::size_t bytes() const {
     return rays_.bytes() + hits_.bytes() + ray_of_.capacity() * sizeof(std::uint32_t);

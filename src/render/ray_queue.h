@@ -90,6 +90,7 @@ class RayQueue {
   std::uint32_t count() const { return count_; }
   std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }
   RayBatch<Real> batch() const { return {rays_.view(), paths_.view(), count_}; }
+  PathOutput<Real> paths() { return paths_.output(); }
 
  private:
   RayStream<Real> rays_;

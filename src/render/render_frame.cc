@@ -56,28 +56,29 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
     frame->sample_x.push_back(static_cast<Real>(point.x));
     frame->sample_y.push_back(static_cast<Real>(point.y));
   }
-  frame->view = {compiled.geometry(),
-                 geometry.tree.view(),
-                 compiled.objects.primitives,
-                 compiled.objects.object_of_primitive,
-                 compiled.materials,
-                 compiled.textures,
-                 compiled.lights,
-                 frame->sample_x,
-                 frame->sample_y,
-                 CompileCamera<Real>(camera, options.width, options.height, placement),
-                 {compiled.background[0], compiled.background[1], compiled.background[2]},
-                 compiled.environment,
-                 options.max_depth,
-                 options.width,
-                 options.height,
-                 static_cast<Real>(options.contrast.value_or(std::nan(""))),
-                 static_cast<Real>(options.min_throughput),
-                 std::any_of(compiled.materials.begin(), compiled.materials.end(),
-                             [](const MaterialData<Real>& material) {
-                               return material.finish.alpha != AlphaUse::kOpaque;
-                             }),
-                 static_cast<Real>(1 / placement.scale)};
+  frame->view = {
+      compiled.geometry(),
+      geometry.tree.view(),
+      compiled.objects.primitives,
+      compiled.objects.object_of_primitive,
+      compiled.materials,
+      compiled.textures,
+      compiled.lights,
+      frame->sample_x,
+      frame->sample_y,
+      CompileCamera<Real>(camera, options.width, options.height, placement),
+      {compiled.background[0], compiled.background[1], compiled.background[2]},
+      compiled.environment,
+      options.max_depth,
+      options.width,
+      options.height,
+      static_cast<Real>(options.contrast.value_or(std::nan(""))),
+      static_cast<Real>(options.min_throughput),
+      std::any_of(compiled.materials.begin(), compiled.materials.end(),
+                  [](const MaterialData<Real>& material) { return LetsLightPass(material); }),
+      std::any_of(compiled.materials.begin(), compiled.materials.end(),
+                  [](const MaterialData<Real>& material) { return material.attenuates; }),
+      static_cast<Real>(1 / placement.scale)};
   if (skips == Skips::kOff) {
     frame->view.tree.skips_boxes = frame->view.tree.node_count == 0;
   }

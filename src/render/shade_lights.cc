@@ -17,7 +17,8 @@ void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceV
     if (facing == 0) continue;
     const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
     if (lit == 0) continue;
-    const Real* shares = frame_.has_alpha && light.casts_shadows ? shares_.data() : nullptr;
+    const bool has_shares = frame_.passes_light && light.casts_shadows;
+    const ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
     kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), shares, count,
                          colours);
     clock_.Charge(Phase::kShade, lit, count);
@@ -38,7 +39,7 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
   kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
                           occluded_.data());
-  if (frame_.has_alpha) return FindShares(light, size, count);
+  if (frame_.passes_light) return FindShares(light, size, count);
   std::uint32_t lit = size;
   for (std::uint32_t i = 0; i < size; ++i) lit -= occluded_[i];
   if (size == count) {  // ray i is that of surface i
@@ -53,15 +54,18 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
 template <typename Real>
 std::uint32_t LightShader<Real>::FindShares(const LightData<Real>& light, std::uint32_t rays,
                                             std::uint32_t count) {
-  shares_.Reserve(StreamCapacity(count));
-  ray_shares_.Reserve(StreamCapacity(rays));
+  shares_.Reserve(count);
+  ray_shares_.Reserve(rays);
+  const ColourOutput<Real> by_ray = ray_shares_.output(), by_surface = shares_.output();
   const Real t_max = light.kind == LightKind::kDirectional ? kDefaultTMax<Real> : Real(1);
-  passer_.Pass(shadow_rays_.view(), t_max, occluded_.data(), rays, ray_shares_.data());
+  passer_.Pass(shadow_rays_.view(), t_max, occluded_.data(), rays, by_ray);
   std::uint32_t lit = 0;
   for (std::uint32_t i = 0; i < rays; ++i) {
     const std::uint32_t surface = rays == count ? i : surface_of_ray_[i];
-    shares_[surface] = ray_shares_[i];
-    lit_[surface] = ray_shares_[i] > 0 ? 1 : 0;
+    by_surface.r[surface] = by_ray.r[i];
+    by_surface.g[surface] = by_ray.g[i];
+    by_surface.b[surface] = by_ray.b[i];
+    lit_[surface] = by_ray.r[i] > 0 || by_ray.g[i] > 0 || by_ray.b[i] > 0 ? 1 : 0;
     lit += lit_[surface];
   }
   clock_.Charge(Phase::kShadow, rays, rays);

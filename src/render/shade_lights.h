@@ -38,7 +38,7 @@ class LightShader {
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
 
-  // The same where surfaces are not all there, from what FindShadows left by ray.
+  // The same where surfaces let light pass, from what FindShadows left by ray.
   std::uint32_t FindShares(const LightData<Real>& light, std::uint32_t rays, std::uint32_t count);
 
   const FrameView<Real>& frame_;
@@ -51,8 +51,8 @@ class LightShader {
   RayStream<Real> shadow_rays_;
   AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
   LightPasser<Real> passer_;
-  // Where surfaces are not all there: the share of the light that arrives, by surface and by ray.
-  AlignedArray<Real> shares_, ray_shares_;
+  // Where surfaces let light pass: the share of it that arrives, by surface and by ray.
+  ColourStream<Real> shares_, ray_shares_;
 };
 
 }  // namespace sheaf

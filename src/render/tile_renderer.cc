@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "simd/query.h"
+#include "src/render/attenuate_paths.h"
 #include "src/render/fill_environment.h"
 #include "src/render/find_surfaces.h"
 #include "src/render/store_layers.h"
@@ -58,7 +59,8 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
   GeneratePrimary(pixels, sample);
   next_reflected_.Reset(pixels.count);
   next_refracted_.Reset(pixels.count);
-  TraceAndShade(primary_.batch(), sample_, recorder);
+  Trace(primary_.batch());
+  Shade(primary_.batch(), sample_, recorder);
   for (int depth = 1; next_reflected_.count() + next_refracted_.count() > 0; ++depth) {
     std::swap(reflected_, next_reflected_);
     std::swap(refracted_, next_refracted_);
@@ -71,11 +73,16 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
     }
     next_reflected_.Reset(spawned);
     next_refracted_.Reset(spawned);
-    for (const RayQueue<Real>* queue : {&reflected_, &refracted_}) {
+    for (RayQueue<Real>* queue : {&reflected_, &refracted_}) {
       if (IsStopped()) return;
       const RayBatch<Real> batch = queue->batch();
+      if (batch.count == 0) continue;
       ray_colours_.Reserve(batch.count);
-      TraceAndShade(batch, ray_colours_, nullptr);
+      Trace(batch);
+      if (frame_.attenuates) {
+        AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue->paths());
+      }
+      Shade(batch, ray_colours_, nullptr);
       AccumulateColours(ray_colours_.view(), batch.paths, batch.count, sample_.output());
       clock_.Charge(Phase::kAccumulate);
     }
@@ -94,16 +101,18 @@ void TileRenderer<Real>::GeneratePrimary(const PixelList<Real>& pixels, std::siz
 }
 
 template <typename Real>
-void TileRenderer<Real>::TraceAndShade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
-                                       FirstHitRecorder<Real>* recorder) {
-  if (batch.count == 0) return;
+void TileRenderer<Real>::Trace(const RayBatch<Real>& batch) {
   hits_.Reserve(batch.count);
   kernels_.trace_closest(frame_.tree, batch.rays, {}, batch.count, Coherence::kUnknown,
                          hits_.output());
   clock_.Charge(Phase::kTrace, batch.count, batch.count);
   binner_.Bin(hits_.view().primitive, batch.count, frame_.primitives);
   clock_.Charge(Phase::kBin);
+}
 
+template <typename Real>
+void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
+                               FirstHitRecorder<Real>* recorder) {
   const ColourOutput<Real> seen = colours.output();
   FillEnvironment(frame_, batch.rays, binner_.missed_rays(), batch.count, seen);
   next_reflected_.StartParents();

@@ -44,8 +44,11 @@ class TileRenderer : public TileWorker {
   void RenderSample(const PixelList<Real>& pixels, std::size_t sample,
                     FirstHitRecorder<Real>* recorder);
   void GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample);
-  void TraceAndShade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
-                     FirstHitRecorder<Real>* recorder);
+  // Leaves hits_ and the bins.
+  void Trace(const RayBatch<Real>& batch);
+  // What was traced last.
+  void Shade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
+             FirstHitRecorder<Real>* recorder);
   void Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
              const SurfaceView<Real>& surfaces, std::uint32_t count);
   void RefineEdges(const PixelRect& tile);

@@ -27,6 +27,23 @@ Real AlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Rea
   return alpha;
 }
 
+// What the surface lets pass of a light behind it, straight on: all of it where nothing is there.
+template <typename Real>
+Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+                    const Surface<Real>& surface) {
+  const FinishData<Real>& finish = material.finish;
+  Vec3<Real> passes = FromArray(material.passes);
+  if (finish.metallic_roughness != kNoTexture) {  // metal lets nothing pass
+    const Vec3<Real> gloss =
+        SampleTexture(textures[finish.metallic_roughness], surface.u, surface.v);
+    passes = passes * (1 - finish.metallic * gloss.z);
+  }
+  if (finish.alpha == AlphaUse::kOpaque) return passes;
+  const Real alpha = AlphaAt(material, textures, surface);
+  const Real gap = 1 - alpha;
+  return passes * alpha + Vec3<Real>{gap, gap, gap};
+}
+
 // glTF's metal and roughness in Whitted's terms: docs/formats.md, "glTF".
 template <typename Real>
 void ApplyGloss(Real metallic, Real roughness, Vec3<Real> base, MaterialData<Real>& point) {

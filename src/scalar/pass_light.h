@@ -1,8 +1,11 @@
-// Light that passes surfaces which are not all there.
+// Light that passes surfaces which are not all there, or which transmit.
 #ifndef SHEAF_SCALAR_PASS_LIGHT_H_
 #define SHEAF_SCALAR_PASS_LIGHT_H_
 
+#include <cmath>
+
 #include "simd/query.h"
+#include "src/scalar/attenuate.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/ray.h"
 #include "src/scalar/sphere_coordinates.h"
@@ -24,35 +27,53 @@ Surface<Real> SurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& 
   return surface;
 }
 
-// Takes a shadow ray past what it hit: it starts anew beyond, with the same end, and `share` is
-// what is left of the light. False where nothing is.
+// Whether there is any.
 template <typename Real>
-bool PassSurface(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ray, Real& share) {
-  const MaterialData<Real>& material = frame.materials[frame.primitives[hit.primitive].material];
-  if (material.finish.alpha == AlphaUse::kOpaque) return false;
-  const Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
-  share = share * (1 - AlphaAt(material, frame.textures, surface));
-  if (!(share > 0)) return false;
-  const Vec3<Real> start = surface.position - surface.face * surface.offset;
+bool IsLight(Vec3<Real> share) {
+  return share.x > 0 || share.y > 0 || share.z > 0;
+}
+
+// What becomes of a shadow ray: it is at its end, it starts anew beyond what it met, or no light is
+// left.
+enum class Passing { kArrived, kGoesOn, kBlocked };
+
+// Takes a shadow ray past what it hit: it starts anew beyond, with the same end. `share` is what is
+// left of the light.
+template <typename Real>
+Passing PassOn(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ray,
+               Vec3<Real>& share) {
+  const bool is_end = hit.primitive == kNoPrimitive;
   // A ray that ends at 1 ends at a point; others have a direction alone.
-  if (ray.t_max == 1) ray.direction = (ray.origin + ray.direction) - start;
+  const bool ends_at_point = ray.t_max == 1;
+  if (frame.attenuates && (!is_end || ends_at_point)) {
+    const Real length = hit.t * std::sqrt(Dot(ray.direction, ray.direction));
+    share = MultiplyColours(share, TransmittanceOf(frame, ray.source, length));
+  }
+  if (is_end) return Passing::kArrived;
+  const MaterialData<Real>& material = frame.materials[frame.primitives[hit.primitive].material];
+  if (!LetsLightPass(material)) return Passing::kBlocked;
+  const Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
+  share = MultiplyColours(share, PassedAt(material, frame.textures, surface));
+  if (!IsLight(share)) return Passing::kBlocked;
+  const Vec3<Real> start = surface.position - surface.face * surface.offset;
+  if (ends_at_point) ray.direction = (ray.origin + ray.direction) - start;
   ray.origin = start;
   ray.source = surface.source ^ kInsideBit;
-  return true;
+  return Passing::kGoesOn;
 }
 
 // The share of the light along a shadow ray that arrives.
 template <typename Real>
-Real LightShare(const FrameView<Real>& frame, Ray<Real> ray) {
-  if (!TraceOccluded(frame.tree, ray)) return 1;
-  if (!frame.has_alpha) return 0;
-  Real share = 1;
+Vec3<Real> LightShare(const FrameView<Real>& frame, Ray<Real> ray) {
+  Vec3<Real> share = {1, 1, 1};
+  if (!TraceOccluded(frame.tree, ray)) return share;
+  if (!frame.passes_light) return {0, 0, 0};
   for (int i = 0; i < kMostPasses; ++i) {
-    const Hit<Real> hit = TraceClosest(frame.tree, ray);
-    if (hit.primitive == kNoPrimitive) return share;
-    if (!PassSurface(frame, hit, ray, share)) return 0;
+    const Passing passing = PassOn(frame, TraceClosest(frame.tree, ray), ray, share);
+    if (passing == Passing::kArrived) return share;
+    if (passing == Passing::kBlocked) break;
   }
-  return 0;
+  return {0, 0, 0};
 }
 
 }  // namespace sheaf::scalar

@@ -14,6 +14,7 @@
 #include "sheaf/stats.h"
 #include "simd/query.h"
 #include "simd/shading.h"
+#include "src/scalar/attenuate.h"
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/environment.h"
 #include "src/scalar/finish.h"
@@ -43,13 +44,13 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& ma
   for (const LightData<Real>& light : frame.lights) {
     const Incidence<Real> incidence = IncidenceOf(light, surface);
     if (!incidence.reaches) continue;
-    Real share = 1;
+    Vec3<Real> share = {1, 1, 1};
     if (light.casts_shadows) {
       ++tally.shadow;
       share = LightShare(frame, ShadowRay(light, surface, incidence));
-      if (!(share > 0)) continue;
+      if (!IsLight(share)) continue;
     }
-    colour = colour + LitBy(light, here, surface, base, incidence) * share;
+    colour = colour + MultiplyColours(LitBy(light, here, surface, base, incidence), share);
   }
   return colour;
 }
@@ -86,11 +87,15 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
   for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
     scratch.reflected.clear();
     scratch.refracted.clear();
-    for (const Path<Real>& path : scratch.paths) {
+    for (Path<Real>& path : scratch.paths) {
       const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
       if (hit.primitive == kNoPrimitive) {
         Accumulate(sum, path.throughput, ColourBeyond(frame, path.ray.direction));
         continue;
+      }
+      if (frame.attenuates) {
+        const Vec3<Real> left = TransmittanceOf(frame, path.ray.source, hit.t);
+        for (int i = 0; i < 3; ++i) path.throughput[i] = path.throughput[i] * left[i];
       }
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];

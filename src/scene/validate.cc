@@ -130,6 +130,8 @@ void Check(const Material& material, FirstFault& fault) {
   fault.Components("reflect", material.reflect, kShare);
   fault.Components("transmit", material.transmit, kShare);
   fault.Number("ior", material.ior, kPositive);
+  fault.Components("attenuation", material.attenuation, kShare);
+  fault.Number("attenuation_distance", material.attenuation_distance, kPositive);
   if (const auto& gloss = material.metallic_roughness) {
     fault.Number("metallic_roughness.metallic", gloss->metallic, kShare);
     fault.Number("metallic_roughness.roughness", gloss->roughness, kShare);
@@ -237,6 +239,7 @@ void Check(const Settings& settings, FirstFault& fault) {
   if (settings.environment) Check(*settings.environment, fault);
   if (settings.ambient) fault.Components("ambient", *settings.ambient, kAtLeastZero);
   fault.Number("exposure", settings.exposure, kPositive);
+  if (settings.ev) fault.Number("ev", *settings.ev, {-kMaxEv, kMaxEv, "a number in [-64, 64]"});
 }
 
 Error At(const std::string& place, const FirstFault& fault) {

@@ -120,6 +120,10 @@ struct Film {
   }
 };
 
+// The exposure, in stops, that turns the median luminance of what is lit into that of a grey card,
+// 0.18, or up to a third of a stop below; 0 where nothing is lit.
+SHEAF_API double MeterExposure(const Film& film);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_SHEAF_FILM_H_

@@ -102,7 +102,10 @@ enum class Values { kLight, kEncoded, kNumbers };
 // What a picture file shall be.
 struct PictureSpec {
   PixelRect window;  // the part that the file holds of a picture of full_width x full_height
-  int full_width = 0, full_height = 0;    // pixels, [1, kMaxImageSide]
+  int full_width = 0, full_height = 0;  // pixels, [1, kMaxImageSide]
+  // Of a picture of bytes that is made of light: exposure in stops and tone, as in Settings.
+  double ev = 0;
+  Tone tone = Tone::kLinear;
   Transfer transfer = Transfer::kLinear;  // of a .png, which says so
   Values values = Values::kLight;
   // The format, as an ending without its dot, e.g. "png"; empty: what the path's ending says.
@@ -152,9 +155,11 @@ class PictureWriter {
   SHEAF_API Status Finish();
 
  private:
-  explicit PictureWriter(std::unique_ptr<PictureEncoder> encoder);
+  PictureWriter(std::unique_ptr<PictureEncoder> encoder, double ev, Tone tone);
 
   std::unique_ptr<PictureEncoder> encoder_;
+  double ev_;
+  Tone tone_;
 };
 
 struct ReadPictureResult {

@@ -115,6 +115,9 @@ struct Material {
   Colour reflect{0.0};     // mirror reflectance, [0, 1]
   Colour transmit{0.0};  // [0, 1]: share that meets a dielectric interface and is split by Fresnel
   double ior = 1.0;      // index of refraction inside over outside, > 0
+  // What is left of light after `attenuation_distance` > 0 inside, [0, 1] by colour: Beer's law.
+  Colour attenuation{1.0};
+  double attenuation_distance = 1.0;
   // What varies from point to point besides the base colour.
   std::optional<Texture> emission_texture = std::nullopt;  // times `emission`
   std::optional<MetallicRoughness> metallic_roughness = std::nullopt;
@@ -290,6 +293,15 @@ struct EnvironmentMap {
 
 using Environment = std::variant<Gradient, EnvironmentMap>;
 
+// What the light of a shadow ray does where it meets a surface that transmits: it goes straight on,
+// times `transmit` at each such surface, or it ends there.
+enum class Shadows { kThrough, kOpaque };
+
+// How light becomes what a display shows, before the transfer. kFilmic rolls off highlights
+// (Narkowicz 2015, "ACES Filmic Tone Mapping Curve").
+enum class Tone { kLinear, kFilmic };
+inline constexpr double kMaxEv = 64;
+
 struct Settings {
   int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
   int samples = 1;                // a pixel, [1, kMaxSamples]
@@ -298,8 +310,13 @@ struct Settings {
   std::optional<Environment> environment = std::nullopt;  // instead of the background
   // Ambient light; where absent the background, or the mean over all directions of the environment.
   std::optional<Colour> ambient;
-  double exposure = 1.0;                // scales every light but the ambient one, > 0
-  Transfer transfer = Transfer::kSrgb;  // of pictures of bytes; colours here are linear
+  double exposure = 1.0;  // scales every light but the ambient one, > 0
+  Shadows shadows = Shadows::kThrough;
+  // Of pictures of bytes: light times 2^ev, ev in [-kMaxEv, kMaxEv], then the tone, then the
+  // transfer; without an ev the one that MeterExposure finds. Colours here are linear.
+  std::optional<double> ev = 0.0;
+  Tone tone = Tone::kLinear;
+  Transfer transfer = Transfer::kSrgb;
 };
 
 struct Scene {

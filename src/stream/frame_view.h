@@ -49,7 +49,8 @@ struct FrameView {
   // everywhere.
   Real contrast;
   Real min_throughput;  // secondary rays of no more are not traced; 0: of none
-  bool has_alpha;       // whether any material is not all there
+  bool passes_light;    // whether any material lets light pass
+  bool attenuates;      // whether any takes light inside
   Real length_unit;     // the user's lengths in one of the geometry's; a power of two
 
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }

@@ -1,0 +1,69 @@
+#include "src/app/choose_look.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "src/app/add_options.h"
+#include "src/app/choose.h"
+#include "src/app/parse_options.h"
+#include "src/formats/picture.h"
+#include "src/formats/printable.h"
+
+namespace sheaf {
+namespace {
+
+// A quarter of a usual picture each way: its median hardly moves with more.
+constexpr int kMeterSide = 256;  // pixels
+
+std::optional<Exposure> ParseExposure(const std::string& text) {
+  if (text == "auto") return Exposure{};
+  const auto ev = ParseNumber(text, -kMaxEv, kMaxEv);
+  return ev ? std::optional(Exposure{*ev}) : std::nullopt;
+}
+
+}  // namespace
+
+void AddLookOptions(CLI::App& app, LookOptions& look) {
+  AddParsed(app, "--exposure", look.exposure, "EV|auto", "a number in [-64, 64] or auto",
+            "Stops that light is brightened by; auto: the median becomes grey", &ParseExposure);
+  AddChoice(app, "--tone", look.tone, {"linear", "filmic"}, "Curve; filmic rolls off highlights");
+}
+
+Status CheckLook(const LookOptions& look, const std::string& named) {
+  if ((!look.exposure && look.tone.empty()) || !HoldsFloats(named)) return Done{};
+  return Usage(fmt::format("{}: for pictures of bytes, and {} holds light as it is",
+                           look.exposure ? "--exposure" : "--tone", PrintablePath(named)));
+}
+
+Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
+                        const RenderOptions& options) {
+  Look look;
+  look.tone = scene.settings.tone;
+  if (!given.tone.empty()) look.tone = given.tone == "filmic" ? Tone::kFilmic : Tone::kLinear;
+  const Exposure exposure = given.exposure.value_or(Exposure{scene.settings.ev});
+  if (exposure.ev) {
+    look.ev = *exposure.ev;
+    return look;
+  }
+  const Result<Film> small = Render(scene, camera, SmallPicture(options, kMeterSide));
+  if (!small) return small.error();
+  look.ev = MeterExposure(small.value());
+  return look;
+}
+
+RenderOptions SmallPicture(const RenderOptions& options, int side) {
+  RenderOptions small = options;
+  const int longer = std::max({options.width, options.height, side});
+  small.width = std::max(1, options.width * side / longer);
+  small.height = std::max(1, options.height * side / longer);
+  small.crop.reset();
+  small.samples = 1;
+  small.contrast.reset();
+  small.timing = Timing::kOff;
+  small.layers = {};
+  return small;
+}
+
+}  // namespace sheaf
