@@ -13,9 +13,11 @@
 #include "same_bits.h"
 #include "simd/shading.h"
 #include "src/formats/read_scene.h"
+#include "src/formats/studio.h"
 #include "src/lab/pov_ray.h"
 #include "src/scalar/spawn.h"
 #include "src/scalar/triangle.h"
+#include "src/scene/bounds.h"
 
 #ifdef SHEAF_HAS_ASSIMP
 #include <assimp/postprocess.h>
@@ -155,19 +157,60 @@ f 1 2 3 4
     const Vec3d right = glm::normalize(glm::cross(ahead, camera.up));
     const Vec3d up = glm::cross(right, ahead);
     const double tangent = std::tan(std::get<Perspective>(camera.projection).fov_y / 360 * M_PI);
-    double widest = 0;
+    double widest = 0, highest = 0;
     for (const double x : {-1.0, 1.0}) {
       for (const double y : {-0.1, 0.1}) {
         const Vec3d to_corner = Vec3d(x, y, 0) - camera.eye;
         const double depth = glm::dot(to_corner, ahead);
         const double across = std::abs(glm::dot(to_corner, right)) / depth / (tangent * aspect);
         CHECK(across <= 1);
-        CHECK(std::abs(glm::dot(to_corner, up)) / depth <= tangent);
+        const double upward = std::abs(glm::dot(to_corner, up)) / depth / tangent;
+        CHECK(upward <= 1);
         widest = std::max(widest, across);
+        highest = std::max(highest, upward);
       }
     }
-    if (aspect <= 1) CHECK(widest > 0.7);  // nor is it far off
+    CHECK(std::max(widest, highest) == doctest::Approx(1 / 1.08));  // with some air
   }
+}
+
+TEST_CASE("a lone model may get a floor, which ends softly and takes its shadow") {
+  const Folder folder;
+  const std::string path = folder.Write("a.obj", R"(v -1 2 0
+v 1 2 0
+v 0 4 0
+f 1 2 3
+)");
+  Result<ReadSceneResult> model = ReadScene(path);
+  REQUIRE(model.ok());
+  Scene& scene = model.value().scene;
+  CHECK(scene.settings.samples == 4);
+  CHECK(scene.settings.contrast.has_value());
+  AddGround(&scene);
+  REQUIRE(scene.objects.size() == 2);
+  const Disk& floor = std::get<Disk>(scene.objects[1].shape);
+  CHECK(floor.center.y < 2);
+  CHECK(floor.center.y > 1.99);
+  CHECK(floor.radius > 5);
+  // From straight above, a grid: nothing at the rim, light in the middle, shadow somewhere.
+  const Camera above{"above", {0, 90, 0}, {0, 0, 0}, {0, 0, -1}, Orthographic{2 * floor.radius}};
+  RenderOptions options;
+  options.width = options.height = 99;
+  const Film film = RenderOrFail(scene, above, options);
+  const auto light = [&](int x, int y) { return film.pixel(x, y)[1]; };
+  const float rim = light(0, 49);
+  float darkest = 1, lightest = 0;
+  for (int y = 35; y < 64; ++y) {
+    for (int x = 35; x < 64; ++x) {
+      darkest = std::min(darkest, light(x, y));
+      lightest = std::max(lightest, light(x, y));
+    }
+  }
+  Scene bare = scene;
+  bare.objects.pop_back();
+  CHECK(RenderOrFail(bare, above, options).pixel(0, 49)[1] == doctest::Approx(rim).epsilon(1e-3));
+  CHECK(lightest > 0.75f);
+  CHECK(darkest < 0.5f);
 }
 
 // ---- Shading normals ----

@@ -55,7 +55,8 @@ inline void CheckSameBits(const Scene& scene, const Camera& camera, RenderOption
         CHECK(PixelsThatDiffer(film, scalar) == 0);
         CHECK(stats.target == target.name());
         // A tile's neighbours are sampled with it: their rays depend on the tiles.
-        if (options.contrast) continue;
+        const bool is_scenes = options.samples == kFromScene;
+        if (options.contrast || (is_scenes && scene.settings.contrast)) continue;
         CHECK(stats.rays.shadow == scalar_stats.rays.shadow);
         CHECK(stats.rays.reflected == scalar_stats.rays.reflected);
         CHECK(stats.rays.refracted == scalar_stats.rays.refracted);

@@ -136,7 +136,7 @@ json LoadSchema() { return json::parse(ReadText(kScenes + "sheaf.schema.json"));
 json CompleteScene() {
   return json::parse(R"({
     "$schema": "sheaf.schema.json",
-    "settings": {"size": [64, 48], "samples": 4, "max_depth": 5, "background": [0.1, 0.2, 0.3],
+    "settings": {"size": [64, 48], "samples": 4, "adaptive": 0.1, "max_depth": 5, "background": [0.1, 0.2, 0.3],
                  "ambient": 0.5, "exposure": 0.5, "srgb": true, "ev": 1.5, "tone": "filmic",
                  "shadows": "opaque",
                  "environment": {"gradient": {"zenith": 1, "horizon": [1, 1, 0.5], "nadir": 0}}},

@@ -134,7 +134,9 @@ Status ConvertScene(const ConvertRequest& request) {
                              })));
   }
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
-  Result<OpenedScene> opened = OpenSceneAndFiles(request.input, request.options);
+  SceneOptions options = request.options;
+  options.floor = Floor::kUnderLoneModels;  // as render has it
+  Result<OpenedScene> opened = OpenSceneAndFiles(request.input, options);
   if (!opened) return opened.error();
   Scene& scene = opened.value().scene;
   const TextureFiles textures = NameTextures(scene, request.output);

@@ -13,6 +13,7 @@
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 #include "src/formats/read_scene.h"
+#include "src/formats/studio.h"
 #include "src/scene/projection.h"
 
 namespace sheaf {
@@ -95,7 +96,10 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   OpenedScene opened{std::move(result.value().scene), std::move(result.value().warnings),
                      std::move(result.value().files)};
   if (const Status aimed = Aim(options, &opened.scene); !aimed) return aimed.error();
-  if (result.value().key_light == KeyLight::kAdded) AimStudio(&opened.scene);
+  if (result.value().key_light == KeyLight::kAdded) {
+    AimStudio(&opened.scene);
+    if (options.floor == Floor::kUnderLoneModels) AddGround(&opened.scene);
+  }
   return opened;
 }
 

@@ -15,6 +15,8 @@ class App;
 
 namespace sheaf {
 
+enum class Floor { kNone, kUnderLoneModels };
+
 // How a file becomes a scene: the options of every command that reads one.
 struct SceneOptions {
   bool allow_outside = false;
@@ -25,6 +27,8 @@ struct SceneOptions {
   std::optional<double> fov;             // likewise, degrees
   // Of the pictures, width over height, where the command line gives their size. No option itself.
   std::optional<double> aspect;
+  // Whether a lone model gets a floor for its shadow. No option itself: commands that show it ask.
+  Floor floor = Floor::kNone;
 };
 
 void AddSceneOptions(CLI::App& app, SceneOptions& options);

@@ -114,6 +114,7 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   RenderOptions options = FrameOptions(settings, request.size, request.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
   options.contrast = request.contrast;
+  if (!request.samples && !request.contrast) options.contrast = settings.contrast;
   options.min_throughput = request.min_throughput.value_or(0);
   options.crop = request.crop;
   if (const Status chosen = ChooseTarget(request.target, options); !chosen) return chosen.error();
@@ -213,6 +214,7 @@ Status RunRender(const RenderRequest& given) {
   if (request.output == "-") request.output = kStandardOutputPath;
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckCommandLine(request); !sound) return sound;
+  if (!request.no_floor) request.options.floor = Floor::kUnderLoneModels;
   if (request.size) {
     request.options.aspect = static_cast<double>(request.size->width) / request.size->height;
   }

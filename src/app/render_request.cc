@@ -58,6 +58,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
              "Pixels a side of a thread's tile, which change no picture but in fast precision");
   AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
             "What stderr shows meanwhile");
+  AddFlag(app, "--no-floor", request.no_floor, "No floor under a model without lights");
   AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
   AddJson(app, request.statistics, "Statistics as JSON to stdout, or into FILE");
 }

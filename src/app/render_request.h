@@ -40,7 +40,7 @@ struct RenderRequest {
   LookOptions look;
   Layers layers;  // of --aov
   std::string progress = "auto";
-  bool quiet = false;
+  bool quiet = false, no_floor = false;
   std::string statistics;  // empty: none; "-": stdout; else a file
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/vec4.hpp>
 #include <utility>
 
 #include "src/formats/read_scene.h"

@@ -8,7 +8,6 @@
 #include "sheaf/formats.h"
 #include "sheaf/scene.h"
 #include "src/formats/scene_files.h"
-#include "src/scene/bounds.h"
 
 namespace sheaf {
 
@@ -23,15 +22,6 @@ Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files);
 // colours of all models.
 inline constexpr double kModelAmbient = 0.25;
 Material PlainMaterial();
-
-// Turns the lights that were added to a scene without any, its first three, by the first camera:
-// the key light over its left shoulder, a fill light from the right, a rim light from behind the
-// model.
-void AimStudio(Scene* scene);
-
-// The camera "default": looks at the middle of the box from the front, a little from the right and
-// above, so that its sphere just fits a picture that is `aspect` times as wide as high.
-Camera CameraThatFrames(const Bounds& bounds, const Vec3d& up, double aspect);
 
 }  // namespace sheaf
 

@@ -18,6 +18,7 @@ namespace {
 constexpr NumberRange kImageSide{1.0, kMaxImageSide, "an integer in [1, 65536]"};
 constexpr NumberRange kSampleCount{1.0, kMaxSamples, "an integer in [1, 65536]"};
 constexpr NumberRange kDepthLimit{0.0, kMaxDepth, "an integer in [0, 1000000]"};
+constexpr NumberRange kContrast{0.0, 1.0, "a number in [0, 1]"};
 constexpr NumberRange kRotation{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kStops{-kMaxEv, kMaxEv, "a number in [-64, 64], or \"auto\""};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
@@ -117,6 +118,10 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
     (*size)[1].ReadInteger(kImageSide, &settings.height);
   }
   object.Optional("samples").ReadInteger(kSampleCount, &settings.samples);
+  if (const JsonCursor adaptive = object.Optional("adaptive"); adaptive.present()) {
+    double contrast = 0;
+    if (adaptive.Read(kContrast, &contrast)) settings.contrast = contrast;
+  }
   object.Optional("max_depth").ReadInteger(kDepthLimit, &settings.max_depth);
   const JsonCursor srgb = object.Optional("srgb");
   bool is_srgb = false;  // absent: as "pictures"
@@ -155,6 +160,7 @@ Json SettingsJson(const Settings& settings) {
                {"max_depth", settings.max_depth},
                {"background", VectorJson(settings.background)},
                {"exposure", settings.exposure}};
+  if (settings.contrast) json["adaptive"] = *settings.contrast;
   if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
   if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");

@@ -52,6 +52,8 @@ Result<RenderOptions> CheckOptions(const RenderOptions& options, const Settings&
   const auto settle = [](int& option, int setting) {
     if (option == kFromScene) option = setting;
   };
+  // Sampling is the scene's or the caller's as a whole.
+  if (options.samples == kFromScene && !options.contrast) checked.contrast = settings.contrast;
   settle(checked.width, settings.width);
   settle(checked.height, settings.height);
   settle(checked.samples, settings.samples);

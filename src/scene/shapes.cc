@@ -44,14 +44,16 @@ const char* MoveMesh(const Transform& transform, Mesh& mesh) {
   // Normals go with the cofactors: the inverse transposed, without its scale.
   const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                              glm::cross(linear[0], linear[1]));
+  const bool mirrors = glm::determinant(linear) < 0;
+  const double side = mirrors ? -1 : 1;
   for (glm::vec3& p : mesh.positions) p = glm::vec3(transform.Point(Vec3d(p)));
   for (glm::vec3& n : mesh.normals) {
-    const Vec3d normal = cofactors * Vec3d(n);
+    const Vec3d normal = cofactors * Vec3d(n) * side;
     const double length = glm::length(normal);
     n = length > 0 ? glm::vec3(normal / length) : glm::vec3(0);
   }
   // A mirror turns the order of corners round, and with it the front.
-  if (glm::determinant(linear) < 0) {
+  if (mirrors) {
     for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
   }
   const bool is_finite =

@@ -234,6 +234,7 @@ void Check(const Settings& settings, FirstFault& fault) {
   fault.Number("width", settings.width, {1, kMaxImageSide, "a number in [1, 65536]"});
   fault.Number("height", settings.height, {1, kMaxImageSide, "a number in [1, 65536]"});
   fault.Number("samples", settings.samples, {1, kMaxSamples, "a number in [1, 65536]"});
+  if (settings.contrast) fault.Number("adaptive", *settings.contrast, kShare);
   fault.Number("max_depth", settings.max_depth, {0, kMaxDepth, "a number in [0, 1000000]"});
   fault.Components("background", settings.background, kAtLeastZero);
   if (settings.environment) Check(*settings.environment, fault);

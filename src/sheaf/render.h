@@ -57,7 +57,7 @@ struct RenderOptions {
   // it trades accuracy for time (docs/numerics.md).
   double min_throughput = 0;
   // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
-  // colours that differ by more than this are one, in [0, 1].
+  // colours that differ by more than this are one, in [0, 1]. The scene's where samples are.
   std::optional<double> contrast;
   // The pixels to render, a rectangle inside the picture that is not empty. The film holds them
   // alone; their bits are those of the whole picture.

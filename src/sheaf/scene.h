@@ -305,7 +305,9 @@ inline constexpr double kMaxEv = 64;
 struct Settings {
   int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
   int samples = 1;                // a pixel, [1, kMaxSamples]
-  int max_depth = 5;              // a ray deeper than this is black; primary rays have depth 0
+  // Where given: more than a pixel's first sample only at edges, see RenderOptions::contrast.
+  std::optional<double> contrast = std::nullopt;
+  int max_depth = 5;  // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
   std::optional<Environment> environment = std::nullopt;  // instead of the background
   // Ambient light; where absent the background, or the mean over all directions of the environment.
