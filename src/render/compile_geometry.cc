@@ -2,8 +2,12 @@
 
 #include <array>
 #include <glm/common.hpp>
+#include <map>
+#include <type_traits>
 #include <variant>
+#include <vector>
 
+#include "src/render/round_corners.h"
 #include "src/scene/shapes.h"
 #include "src/scene/textures.h"
 
@@ -38,22 +42,29 @@ class GeometryWriter {
     arrays_ = GeometryArrays<Real>(counts, attributes_);
     to_.primitives.reserve(counts.total());
     to_.object_of_primitive.reserve(counts.total());
+    // In doubles corners stay what they are.
+    if constexpr (std::is_same_v<Real, float>) rounded_ = RoundCorners(scene, placement);
   }
 
   void Add(std::uint32_t index, const Object& object) {
     object_ = index;
     material_ = object.material;
     if (const auto* mesh = std::get_if<Mesh>(&object.shape)) return AddMesh(*mesh);
-    ForEachPrimitive(object.shape, [&](const ShapePrimitive& primitive) { AddPlain(primitive); });
+    if (const auto rounded = rounded_.find(index); rounded != rounded_.end()) {
+      for (const ShapePrimitive& primitive : rounded->second) AddPlain(primitive);
+    } else {
+      ForEachPrimitive(object.shape,
+                       [&](const ShapePrimitive& primitive) { AddPlain(Placed(primitive)); });
+    }
     ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(placement_.Point(point)); });
   }
 
   const PointBounds& bounds() const { return bounds_; }
 
  private:
-  // A primitive that is no mesh's.
+  // A primitive that is no mesh's, where it is placed.
   void AddPlain(const ShapePrimitive& primitive) {
-    const std::uint32_t i = Put(primitive.kind, Placed(primitive));
+    const std::uint32_t i = Put(primitive.kind, primitive.fields);
     if (primitive.kind != PrimitiveKind::kTriangle) return;
     for (int vertex = 0; vertex < 3; ++vertex) {
       if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, primitive.uv[vertex]);
@@ -90,16 +101,16 @@ class GeometryWriter {
     }
   }
 
-  // The primitive's fields where they are computed in: its points, and its radius if it has one.
-  std::array<double, kMaxFields> Placed(const ShapePrimitive& primitive) const {
-    std::array<double, kMaxFields> fields = primitive.fields;
+  // The primitive where it is computed: its points, and its radius if it has one.
+  ShapePrimitive Placed(ShapePrimitive primitive) const {
+    std::array<double, kMaxFields>& fields = primitive.fields;
     const bool is_triangle = primitive.kind == PrimitiveKind::kTriangle;
     for (std::size_t at = 0; at < (is_triangle ? 9 : 3); at += 3) {
       const Vec3d point = placement_.Point({fields[at], fields[at + 1], fields[at + 2]});
       for (int axis = 0; axis < 3; ++axis) fields[at + axis] = point[axis];
     }
     if (!is_triangle) fields[3] = placement_.Length(fields[3]);
-    return fields;
+    return primitive;
   }
 
   // Returns the index among its kind.
@@ -130,6 +141,7 @@ class GeometryWriter {
   }
 
   const ScenePlacement& placement_;
+  std::map<std::uint32_t, std::vector<ShapePrimitive>> rounded_;
   VertexAttributes attributes_;
   CompiledGeometry<Real>& to_;
   GeometryArrays<Real>& arrays_;

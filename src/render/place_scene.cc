@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "src/render/round_corners.h"
 #include "src/scene/bounds.h"
 #include "src/scene/direction.h"
 
@@ -65,6 +66,7 @@ ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
     *all = {glm::min(all->min, bounds->min), glm::max(all->max, bounds->max)};
   }
   if (!(view.distance > 0) || !std::isfinite(view.distance)) return placement;
+  placement.nearest = view.distance;
   if (LargestComponent(view.place) > kMostDistances * view.distance)
     placement.origin = OriginAt(view);
   const double size = std::max({LargestComponent(all->min - placement.origin),
@@ -73,6 +75,7 @@ ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
   if (!(size >= kLeastSize && size <= kMostSize) && size > 0 && std::isfinite(size)) {
     placement.scale = std::ldexp(1.0, -std::ilogb(size));
   }
+  FitCorner(scene, placement);
   return placement;
 }
 

@@ -5,6 +5,8 @@
 #ifndef SHEAF_RENDER_PLACE_SCENE_H_
 #define SHEAF_RENDER_PLACE_SCENE_H_
 
+#include <limits>
+
 #include "sheaf/scene.h"
 
 namespace sheaf {
@@ -13,6 +15,8 @@ namespace sheaf {
 struct ScenePlacement {
   Vec3d origin{0.0};
   double scale = 1;  // a power of two
+  // About how far the eye is from what it sees nearest, as the user counts.
+  double nearest = std::numeric_limits<double>::infinity();
 
   Vec3d Point(const Vec3d& p) const { return (p - origin) * scale; }
   double Length(double length) const { return length * scale; }
