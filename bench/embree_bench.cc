@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "bench/compare_builds.h"
+#include "bench/compare_places.h"
 #include "bench/compare_tracers.h"
 #include "bench/embree_peer.h"
 #include "bench/make_scenes.h"
@@ -32,10 +34,11 @@ constexpr std::uint32_t kQuickSize = 256, kQuickPrimitives = 25'000;
 // Larger scenes take part where they are asked for by name, and in --growth.
 constexpr std::uint32_t kUsualPrimitives = 2'000'000;
 
-enum class Table { kRays, kBuild, kGrowth };
+enum class Table { kRays, kBuild, kGrowth, kPlaces };
 
 struct Request {
   CompareOptions compare;
+  PlaceOptions places;
   std::string scene;               // part of the name
   std::optional<BenchScene> mesh;  // of the user, instead of the catalogue's scenes
   std::uint32_t largest = kUsualPrimitives;
@@ -162,6 +165,32 @@ Json RunBuild(const Request& request) {
   return rows;
 }
 
+Json RunPlaces(const Request& request) {
+  Json rows = Json::array();
+  fmt::print("{:<16}{:>9}{:>9}  {:<14}{:>9}  {:<26}{:>11}{:>11}\n", "scene", "moved", "scaled",
+             "tracer", "rays", "off: hit-or-miss + other t", "median", "most of t");
+  PlaceOptions options = request.places;
+  options.picture_size = request.compare.picture_size;
+  ForEachScene(request, [&](const BenchScene& scene) {
+    ComparePlaces(scene, options, [&](const PlaceErrors& e) {
+      const std::string off =
+          fmt::format("{}: {} + {}", e.hit_or_miss + e.other_t, e.hit_or_miss, e.other_t);
+      fmt::print("{:<16}{:>9g}{:>9g}  {:<14}{:>9}  {:<26}{:>11.2g}{:>11.2g}\n", scene.name, e.moved,
+                 e.scaled, e.tracer, e.rays, off, e.median, e.most);
+      rows.push_back({{"scene", scene.name},
+                      {"moved", e.moved},
+                      {"scaled", e.scaled},
+                      {"tracer", e.tracer},
+                      {"rays", e.rays},
+                      {"hit_or_miss", e.hit_or_miss},
+                      {"other_t", e.other_t},
+                      {"median", e.median},
+                      {"most", e.most}});
+    });
+  });
+  return rows;
+}
+
 // Draws `table`, tab-separated with a line of names first, both axes logarithmic. Returns whether
 // gnuplot was there and content.
 bool DrawChart(const std::string& table, const std::string& path) {
@@ -212,6 +241,20 @@ Json RunGrowth(const Request& request) {
   return rows;
 }
 
+Json RunTable(const Request& request) {
+  switch (request.table) {
+    case Table::kBuild:
+      return RunBuild(request);
+    case Table::kGrowth:
+      return RunGrowth(request);
+    case Table::kPlaces:
+      return RunPlaces(request);
+    case Table::kRays:
+      break;
+  }
+  return RunRays(request);
+}
+
 void PrintCatalogue() {
   for (const SceneMaker& maker : SceneCatalogue()) {
     fmt::print("{:<16}{:>10} primitives{}\n", maker.name, maker.primitives,
@@ -250,6 +293,13 @@ int Fail(const std::string& message) {
   return EXIT_FAILURE;
 }
 
+std::array<CLI::Option*, 2> AddPlaceOptions(CLI::App& app, PlaceOptions& places) {
+  return {app.add_option("--moved", places.moved, "errors of t instead: scenes moved by these")
+              ->delimiter(','),
+          app.add_option("--scaled", places.scaled, "errors of t instead: scenes times these")
+              ->delimiter(',')};
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Sheaf beside Embree: million rays a second, builds, growth", "embree_bench");
   Request request;
@@ -273,6 +323,9 @@ int Main(int argc, char** argv) {
   auto* growth = app.add_flag("--growth", grows, "primary rays from 1k to 10M triangles, as TSV");
   build->excludes(growth);
   mesh->excludes(growth);
+  for (CLI::Option* places : AddPlaceOptions(app, request.places)) {
+    places->excludes(build)->excludes(growth);
+  }
   app.add_option("--chart", request.chart_path, "draw --growth with gnuplot, as SVG")
       ->needs(growth);
   app.add_option("--json", request.json_path, "also write the results to this file");
@@ -282,7 +335,11 @@ int Main(int argc, char** argv) {
     PrintCatalogue();
     return EXIT_SUCCESS;
   }
-  request.table = builds ? Table::kBuild : grows ? Table::kGrowth : Table::kRays;
+  const bool is_placed = !request.places.moved.empty() || !request.places.scaled.empty();
+  request.table = builds      ? Table::kBuild
+                  : grows     ? Table::kGrowth
+                  : is_placed ? Table::kPlaces
+                              : Table::kRays;
   if (grows) kinds = {"primary"}, request.largest = UINT32_MAX;
   if (is_quick) {
     request.compare.picture_size = kQuickSize;
@@ -298,7 +355,8 @@ int Main(int argc, char** argv) {
   }
   request.compare.targets = *parsed_targets;
   if (!mesh_path.empty()) {
-    Result<BenchScene> read = ReadMesh(mesh_path);
+    const MeshView view = is_placed ? MeshView::kCamera : MeshView::kFramed;
+    Result<BenchScene> read = ReadMesh(mesh_path, view);
     if (!read) return Fail(read.error().message);
     request.mesh = std::move(read).value();
   } else if (ChooseScenes(request).empty())
@@ -309,9 +367,7 @@ int Main(int argc, char** argv) {
   fmt::print("# Embree {}; Sheaf on {}; medians of {}{}\n", embree,
              fmt::join(request.compare.targets, ", "), request.compare.repetitions,
              request.table == Table::kBuild ? "" : "; one thread, million rays a second");
-  const Json rows = request.table == Table::kBuild    ? RunBuild(request)
-                    : request.table == Table::kGrowth ? RunGrowth(request)
-                                                      : RunRays(request);
+  const Json rows = RunTable(request);
   if (!request.json_path.empty()) {
     std::ofstream file(request.json_path);
     file << Json{{"embree", embree},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "sheaf/formats.h"
 #include "src/render/compile_scene.h"
@@ -68,9 +70,20 @@ void Frame(const Bounds& bounds, BenchScene& scene) {
   scene.fov = 50;
 }
 
+void LookThrough(const Camera& camera, BenchScene& scene) {
+  const auto* perspective = std::get_if<Perspective>(&camera.projection);
+  if (perspective == nullptr) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    scene.eye[axis] = static_cast<float>(camera.eye[axis]);
+    scene.look_at[axis] = static_cast<float>(camera.look_at[axis]);
+    scene.up[axis] = static_cast<float>(camera.up[axis]);
+  }
+  scene.fov = static_cast<float>(perspective->fov_y);
+}
+
 }  // namespace
 
-Result<BenchScene> ReadMesh(const std::string& path) {
+Result<BenchScene> ReadMesh(const std::string& path, MeshView view) {
   const Result<ReadSceneResult> read = ReadScene(path);
   if (!read) return read.error();
   const CompiledScene<float> compiled = CompileScene<float>(read.value().scene);
@@ -84,6 +97,8 @@ Result<BenchScene> ReadMesh(const std::string& path) {
     return Error{ErrorKind::kUsage, path + ": no triangles and no spheres that a ray can hit"};
   }
   Frame(bounds, scene);
+  const std::vector<Camera>& cameras = read.value().scene.cameras;
+  if (view == MeshView::kCamera && !cameras.empty()) LookThrough(cameras[0], scene);
   return scene;
 }
 

@@ -9,10 +9,15 @@
 
 namespace sheaf::bench {
 
-// The triangles and spheres of any file that ReadScene reads, seen from the front, the right and
-// above, so that all of them are in the picture; the light stands above the eye, to its left.
-// Fails as ReadScene does, and where there is nothing to hit or only disks. Named after the file.
-Result<BenchScene> ReadMesh(const std::string& path);
+enum class MeshView {
+  kFramed,  // from the front, the right and above, so that all is in the picture
+  kCamera,  // of the file's first camera where that is a perspective one; else the same
+};
+
+// The triangles and spheres of any file that ReadScene reads; the light stands above the framed
+// view's eye, to its left. Fails as ReadScene does, and where there is nothing to hit or only
+// disks. Named after the file.
+Result<BenchScene> ReadMesh(const std::string& path, MeshView view = MeshView::kFramed);
 
 }  // namespace sheaf::bench
 

@@ -13,12 +13,15 @@
 #include "sheaf/target.h"
 #include "sheaf/version.h"
 #include "src/app/draw_chart.h"
+#include "src/app/interrupt.h"
 #include "src/app/json_text.h"
+#include "src/app/print_message.h"
 #include "src/app/render_timed.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/printable.h"
 #include "src/lab/has_program.h"
 #include "src/lab/picture_metrics.h"
+#include "src/lab/pov_ray.h"
 #include "src/lab/rank_statistics.h"
 #include "src/scene/transform.h"
 
@@ -26,6 +29,7 @@ namespace sheaf {
 namespace {
 
 constexpr Precision kPlacePrecisions[] = {Precision::kStrict, Precision::kFast, Precision::kDouble};
+constexpr char kPovRayName[] = "POV-Ray";
 
 struct Place {
   double moved = 0, scaled = 1;
@@ -97,20 +101,32 @@ std::string ReportJson(const ParetoTitle& title, const std::vector<PlacePoint>& 
   return JsonText(json);
 }
 
+// A name as gnuplot may have it.
+std::string BlockName(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 // Pixels above, milliseconds below, a line a precision.
 Status DrawPlaces(const ParetoTitle& title, const std::vector<PlacePoint>& points,
                   const std::string& stem) {
   std::string data, above, below;
-  for (const Precision precision : kPlacePrecisions) {
-    const std::string name = PrecisionName(precision);
-    data += fmt::format("${} << END\n", name);
+  std::vector<std::string> names;
+  for (const PlacePoint& p : points) {
+    if (std::find(names.begin(), names.end(), p.precision) == names.end()) {
+      names.push_back(p.precision);
+    }
+  }
+  for (const std::string& name : names) {
+    data += fmt::format("${} << END\n", BlockName(name));
     for (const PlacePoint& p : points) {
       if (p.precision != name) continue;
       data += fmt::format("{} {} {}\n", GnuplotString(PlaceName(p)), p.over, 1e3 * p.seconds);
     }
     data += "END\n";
     const auto line = [&](const char* column) {
-      return fmt::format("${0} using {1}:xtic(1) with linespoints title \"{0}\", ", name, column);
+      return fmt::format("${} using {}:xtic(1) with linespoints title \"{}\", ", BlockName(name),
+                         column, name);
     };
     above += line("2");
     below += line("3");
@@ -127,6 +143,39 @@ Status DrawPlaces(const ParetoTitle& title, const std::vector<PlacePoint>& point
   return DrawChart(data, plot, stem);
 }
 
+// The frames of every place, round by round.
+class PlaceFrames {
+ public:
+  // `made`: what the others are compared with, the scene where it was made, in double.
+  explicit PlaceFrames(Film made) : made_(std::move(made)) {}
+
+  // The first of a place and a name has the error of all.
+  void Add(const Place& place, const std::string& name, double seconds, const Film& film) {
+    std::size_t at = 0;
+    while (at < points_.size() && !IsOf(points_[at], place, name)) ++at;
+    if (at == points_.size()) {
+      const PictureMetrics metrics = MeasurePictures(made_, film, Transfer::kLinear);
+      points_.push_back({place.moved, place.scaled, name, 0, metrics.over, metrics.rmse});
+      seconds_.emplace_back();
+    }
+    seconds_[at].push_back(seconds);
+  }
+
+  std::vector<PlacePoint> Points() {
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i].seconds = Median(seconds_[i]);
+    return points_;
+  }
+
+ private:
+  static bool IsOf(const PlacePoint& point, const Place& place, const std::string& name) {
+    return point.moved == place.moved && point.scaled == place.scaled && point.precision == name;
+  }
+
+  Film made_;
+  std::vector<PlacePoint> points_;
+  std::vector<std::vector<double>> seconds_;
+};
+
 }  // namespace
 
 Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, const Scene& scene,
@@ -134,39 +183,38 @@ Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, cons
                                               int repetitions) {
   RenderOptions options = base;
   options.samples = 1;
-  std::vector<PlacePoint> points;
-  std::vector<std::vector<double>> seconds;
-  Film made;
+  bool has_peer = HasPovRay() && std::holds_alternative<Perspective>(camera.projection);
+  options.precision = Precision::kDouble;
+  const Result<TimedFrame> exact = RenderTimed(scene, camera, options);
+  if (!exact) return exact.error();
+  PlaceFrames frames(exact.value().film);
   // Round by round over all places, because a machine's clock drifts. The first has the errors.
   for (int round = 0; round < repetitions; ++round) {
     Say(request,
         fmt::format("{}: places, round {} of {}", Printable(camera.name), round + 1, repetitions));
-    std::size_t index = 0;
     for (const Place& place : ListPlaces(request)) {
       const Result<Scene> placed = Placed(scene, camera, place);
       if (!placed) return placed.error();
-      if (made.rgb.empty()) {
-        options.precision = Precision::kDouble;
-        Result<TimedFrame> exact = RenderTimed(placed.value(), placed.value().cameras[0], options);
-        if (!exact) return exact.error();
-        made = std::move(exact.value().film);
-      }
+      const Camera& eye = placed.value().cameras[0];
       for (const Precision precision : kPlacePrecisions) {
         options.precision = precision;
-        const Result<TimedFrame> timed =
-            RenderTimed(placed.value(), placed.value().cameras[0], options);
+        const Result<TimedFrame> timed = RenderTimed(placed.value(), eye, options);
         if (!timed) return timed.error();
-        seconds.resize(std::max(seconds.size(), index + 1));
-        seconds[index++].push_back(timed.value().seconds);
-        if (round > 0) continue;
-        const PictureMetrics metrics = MeasurePictures(made, timed.value().film, Transfer::kLinear);
-        points.push_back(
-            {place.moved, place.scaled, PrecisionName(precision), 0, metrics.over, metrics.rmse});
+        frames.Add(place, PrecisionName(precision), timed.value().seconds, timed.value().film);
       }
+      if (!has_peer) continue;
+      const Result<PovRender> peer = RenderWithPovRay(placed.value(), eye, options.width,
+                                                      options.height, "-A", PovPicture::kRead);
+      if (const Status going = CheckInterrupted(); !going) return going.error();
+      if (!peer) {
+        PrintMessage(fmt::format("sheaf: {}; the report goes on without it", peer.error().message));
+        has_peer = false;
+        continue;
+      }
+      frames.Add(place, kPovRayName, peer.value().seconds, peer.value().film);
     }
   }
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].seconds = Median(seconds[i]);
-  return points;
+  return frames.Points();
 }
 
 std::string PlaceText(const PlacePoint& point) {

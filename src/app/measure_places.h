@@ -16,14 +16,15 @@ namespace sheaf {
 
 // One place and precision, one sample a pixel.
 struct PlacePoint {
-  double moved, scaled;  // the scene is scaled first
-  std::string precision;
-  double seconds = 0;      // median of one frame
+  double moved, scaled;    // the scene is scaled first
+  std::string precision;   // or "POV-Ray", where that is installed
+  double seconds = 0;      // median of one frame; POV-Ray tells whole milliseconds
   std::uint64_t over = 0;  // pixels more than 1/255 off the scene where it was made, in double
   double error = 0;        // RMSE against that
 };
 
-// Every place of the request in strict, fast and double, on the best target.
+// Every place of the request in strict, fast and double, on the best target, and by POV-Ray where
+// it is installed and knows the projection.
 Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, const Scene& scene,
                                               const Camera& camera, const RenderOptions& base,
                                               int repetitions);
