@@ -85,21 +85,25 @@ TEST_CASE("objects and primitives are numbered in the order of the calls") {
   CHECK(input.AddSpheres(kTwoSpheres) == 3);
   CHECK(input.AddTriangles(kSquare, kTwoTriangles) == 4);
   CHECK(input.AddSpheres({}) == 5);
+  const std::vector<float> disks = {0, 0, 1, 1, 0, 0, 1, 0, 0, 2, 1, 0, 0, 1, 0, 0, 3, 0, 0, 0, 1};
+  CHECK(input.AddDisks(disks) == 6);
   const Result<Geometry> built = Geometry::Build(input);
   REQUIRE(built.ok());
   const Geometry& geometry = built.value();
-  CHECK(geometry.object_count() == 6);
+  CHECK(geometry.object_count() == 7);
   const std::uint32_t want[] = {1, 1, 3, 3, 4, 4};
   for (std::uint32_t i = 0; i < 6; ++i) CHECK(geometry.object_of(i) == want[i]);
   CHECK(geometry.first_primitive(1) == 0);
   CHECK(geometry.first_primitive(3) == 2);
   CHECK(geometry.first_primitive(4) == 4);
   const GeometryStatistics statistics = geometry.statistics();
+  CHECK(statistics.primitives == 8);
   CHECK(statistics.triangles == 4);
   CHECK(statistics.spheres == 2);
-  CHECK(statistics.never_hit == 0);
+  CHECK(statistics.disks == 2);
+  CHECK(statistics.never_hit == 1);  // the disk of radius 0
   CHECK(statistics.nodes == 1);
-  CHECK(statistics.leaves == 2);
+  CHECK(statistics.leaves == 3);
   CHECK(statistics.depth == 1);
   CHECK(statistics.bytes > sizeof(TreeNode));
   CHECK(geometry.lower()[2] <= 0);

@@ -134,6 +134,7 @@ GeometryStatistics GeometryOf<Real>::statistics() const {
   statistics.primitives = tree.primitive_count();
   statistics.triangles = tree.of(PrimitiveKind::kTriangle).count;
   statistics.spheres = tree.of(PrimitiveKind::kSphere).count;
+  statistics.disks = tree.of(PrimitiveKind::kDisk).count;
   statistics.never_hit = data().never_hit;
   statistics.skipped = data().skipped;
   statistics.nodes = tree.node_count;

@@ -110,8 +110,8 @@ struct BuildOptions {
 
 // What a geometry is made of, and takes.
 struct GeometryStatistics {
-  std::uint32_t primitives;          // in the tree, of all kinds
-  std::uint32_t triangles, spheres;  // of these
+  std::uint32_t primitives;                 // in the tree, of all kinds
+  std::uint32_t triangles, spheres, disks;  // of these
   // Left out, because no ray can hit it: without area, of radius 0, or so small beside the largest
   // triangle that its area is 0 in the arithmetic (docs/numerics.md has the numbers).
   std::uint32_t never_hit;
