@@ -134,20 +134,29 @@ TEST_CASE_TEMPLATE("hit points are those of the specification, on every target",
 
 // ---- A ray that goes on does not meet where it starts ----
 
-// Rays at the diagonal of a square of two triangles, 589 to the side.
+// Rays at the diagonal of a parallelogram of two triangles. Its corners are whole numbers, so that
+// they lie in one plane, and that runs along no axis, so that points of it are rounded off it.
 struct Diagonal {
   Geometry geometry;
   RayLists<float> rays;
+  Vec3<float> mirrored;  // the direction of the rays, mirrored by the plane
 
   Diagonal() {
-    const std::vector<float> corners = {0, 0, 0, 589, 0, 0, 589, 589, 0, 0, 589, 0};
+    const Vec3<float> corner = {307, -211, 503}, side = {589, 31, -97}, other = {-41, 611, 203};
+    std::vector<float> corners;
+    for (const auto& p : {corner, corner + side, corner + side + other, corner + other}) {
+      corners.insert(corners.end(), {p.x, p.y, p.z});
+    }
     const std::vector<std::uint32_t> triangles = {0, 1, 2, 0, 2, 3};
     GeometryInput input;
     input.AddTriangles(corners, triangles);
     geometry = std::move(Geometry::Build(input)).value();
+    const Vec3<float> normal = Normalize(Cross(side, other)), slant = Normalize(side) * 0.1f;
+    const Vec3<float> direction = slant - normal;
+    mirrored = slant + normal;
     for (int i = 1; i < 2000; ++i) {
-      const float x = 0.29f * static_cast<float>(i);
-      rays.Add({{x, x, 30}, {0.013f, 0.013f, -1}});
+      const Vec3<float> at = corner + (side + other) * (static_cast<float>(i) / 2000);
+      rays.Add({at - direction * 30.0f, direction});
     }
   }
 
@@ -171,21 +180,25 @@ TEST_CASE("rays that go on from the diagonal of a square do not meet its other h
     for (const std::uint32_t primitive : hits.primitive) REQUIRE(primitive < 2);
     PointLists<float> points(n);
     FindHitPoints(square.geometry, rays.view(), hits.view(), n, points.view(), target).value();
-    std::vector<float> up(n, 1.0f);
-    const auto start = [&](int k, const float* z, const std::uint32_t* source) {
+    std::vector<float> up[3];
+    for (int k = 0; k < 3; ++k) up[k].assign(n, square.mirrored[k]);
+    const auto start = [&](int k, const std::vector<float>* to, const std::uint32_t* source) {
       return RayArrays{points.number[k].data(),
                        points.number[k + 1].data(),
                        points.number[k + 2].data(),
-                       rays.number[3].data(),
-                       rays.number[4].data(),
-                       z,
+                       to[0].data(),
+                       to[1].data(),
+                       to[2].data(),
                        source};
     };
-    CHECK(square.Again(start(12, rays.number[5].data(), points.back_source.data()), target) == 0);
-    CHECK(square.Again(start(9, up.data(), points.front_source.data()), target) == 0);
+    const std::vector<float>* const down = &rays.number[3];
+    CHECK(square.Again(start(12, down, points.back_source.data()), target) == 0);
+    CHECK(square.Again(start(9, up, points.front_source.data()), target) == 0);
     // Without the primitive too: it is the place that keeps a ray off.
-    CHECK(square.Again(start(12, rays.number[5].data(), nullptr), target) == 0);
-    CHECK(square.Again(start(9, up.data(), nullptr), target) == 0);
+    CHECK(square.Again(start(12, down, nullptr), target) == 0);
+    CHECK(square.Again(start(9, up, nullptr), target) == 0);
+    // On the plane itself nothing does.
+    CHECK(square.Again(start(0, down, points.back_source.data()), target) > 50);
     // From o + t d, with the triangle that was hit as their source, some do.
     std::vector<float> met[3];
     for (std::size_t i = 0; i < n; ++i) {
@@ -199,6 +212,47 @@ TEST_CASE("rays that go on from the diagonal of a square do not meet its other h
   };
   ForEachTarget(check);
   check(Target::Scalar());
+}
+
+TEST_CASE("rays and hits as structures have the points of arrays") {
+  struct Both {
+    float origin[3];
+    std::uint32_t id;
+    float direction[3], t, uv[2];
+    std::uint32_t primitive;
+  };
+  Random random(5);
+  const RandomObjects<float> objects(random, 40);
+  const Geometry geometry = std::move(Geometry::Build(objects.Input())).value();
+  RayLists<float> rays;
+  for (int i = 0; i < 200; ++i) rays.Add(RandomRay<float>(random, 0));
+  HitLists<float> hits(rays.size());
+  TraceClosest(geometry, rays.view(), rays.size(), hits.view()).value();
+  std::vector<Both> both(rays.size());
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      both[i].origin[k] = rays.number[k][i];
+      both[i].direction[k] = rays.number[3 + k][i];
+    }
+    both[i].t = hits.t[i], both[i].uv[0] = hits.u[i], both[i].uv[1] = hits.v[i];
+    both[i].primitive = hits.primitive[i];
+  }
+  RayArrays from = {&both[0].origin[0],    &both[0].origin[1],    &both[0].origin[2],
+                    &both[0].direction[0], &both[0].direction[1], &both[0].direction[2]};
+  HitArrays at = {
+      .t = &both[0].t, .primitive = &both[0].primitive, .u = &both[0].uv[0], .v = &both[0].uv[1]};
+  from.stride = at.stride = sizeof(both[0]);
+  PointLists<float> want(rays.size()), got(rays.size());
+  FindHitPoints(geometry, rays.view(), hits.view(), rays.size(), want.view()).value();
+  FindHitPoints(geometry, from, at, rays.size(), got.view()).value();
+  std::size_t wrong = 0, found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    wrong += !SamePoint(got.at(i), want.at(i));
+    wrong += !SamePoint(FindHitPoint(geometry, from, at, i).value(), want.at(i));
+    found += want.at(i).front_source != Geometry::kNoPrimitive;
+  }
+  CHECK(wrong == 0);
+  CHECK(found > 50);
 }
 
 TEST_CASE("a ray goes on into a sphere and out again") {

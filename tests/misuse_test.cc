@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -166,6 +167,28 @@ TEST_CASE("null rays are named, and nothing is written") {
   CHECK(nowhere.error().message == "occluded is null");
   CHECK(TraceOccluded(geometry, sound, 0, nullptr).ok());
   CHECK(TraceClosest(geometry, sound, 1, {}).ok());
+}
+
+// The spans are longer than the arrays: whoever read them would crash.
+TEST_CASE("more primitives than ids tell apart are refused before one is read") {
+  constexpr std::size_t kMost = std::size_t{1} << 26;
+  const float one[1] = {1};
+  const std::uint32_t zero[1] = {0};
+  for (const std::size_t count : {kMost + 1, (std::size_t{1} << 32) + 1, std::size_t{1} << 40}) {
+    CAPTURE(count);
+    const std::string most = ", at most 67108864 are possible";
+    GeometryInput spheres, disks, triangles;
+    spheres.AddSpheres(std::span<const float>(one, 4 * count));
+    CHECK(BuildError(spheres) == std::to_string(count) + " spheres" + most);
+    disks.AddDisks(std::span<const float>(one, 7 * count));
+    CHECK(BuildError(disks) == std::to_string(count) + " disks" + most);
+    triangles.AddTriangles(std::span<const float>(one, 3 * count), {zero, 3 * count});
+    CHECK(BuildError(triangles) == std::to_string(count) + " triangles" + most);
+  }
+  // Of many objects none of which is too large.
+  GeometryInput halves;
+  for (int i = 0; i < 3; ++i) halves.AddSpheres(std::span<const float>(one, 2 * kMost));
+  CHECK(BuildError(halves) == "100663296 spheres, at most 67108864 are possible");
 }
 
 // Kernels count in 32 bits.

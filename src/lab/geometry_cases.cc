@@ -144,33 +144,43 @@ void GiantsAndOddRays(Report& report) {
 }
 
 void GoingOn(Report& report) {
-  Shapes square;
-  square.AddQuad({0, 0, 0}, {589, 0, 0}, {589, 589, 0}, {0, 589, 0});
-  const Result<Geometry> geometry = Geometry::Build(InputOf(square));
+  // Whole numbers, so that all four corners lie in one plane, which runs through no axis.
+  const Vec corner = {307, -211, 503}, side = {589, 31, -97}, other = {-41, 611, 203};
+  Shapes slanted;
+  slanted.AddQuad(corner, corner + side, corner + side + other, corner + other);
+  const Result<Geometry> geometry = Geometry::Build(InputOf(slanted));
   report.Expect(geometry.ok(), "no geometry");
   if (!geometry) return;
+  const Vec normal = Normalize(Cross(side, other)), slant = Normalize(side) * 0.7f;
+  const Vec in = slant - normal, back = slant + normal;
   Trace down;
   for (int i = 1; i < 2000; ++i) {
-    const float x = 0.29f * static_cast<float>(i);
-    down.Add({{x, x, 30}, {0.013f, 0.013f, -1}});
+    const Vec on_diagonal = corner + (side + other) * (static_cast<float>(i) / 2000);
+    down.Add({on_diagonal - in * 31.7f, in});
   }
   const std::size_t n = down.count();
   ForEachTarget(report, [&](Target target) {
     down.Run(geometry.value(), target);
-    std::vector<float> number[3];
+    std::vector<float> number[6];
     for (auto& list : number) list.resize(n);
     HitPointArrays points;
     points.back = {number[0].data(), number[1].data(), number[2].data()};
+    points.front = {number[3].data(), number[4].data(), number[5].data()};
     FindHitPoints(geometry.value(), down.rays(), down.hits(), n, points, target).value();
-    Trace on;
-    for (std::size_t i = 0; i < n; ++i) {
-      // Without a source: it is the place that keeps a ray off.
-      on.Add({{number[0][i], number[1][i], number[2][i]}, {0.013f, 0.013f, -1}});
-    }
-    on.Run(geometry.value(), target);
+    // Without a source: it is the place that keeps a ray off.
+    Trace through, mirrored;
     for (std::size_t i = 0; i < n; ++i) {
       report.Expect(down.primitive[i] < 2, "a ray at the diagonal misses");
-      report.Expect(on.primitive[i] == kNoPrimitive, "a ray meets the square that it went through");
+      through.Add({{number[0][i], number[1][i], number[2][i]}, in});
+      mirrored.Add({{number[3][i], number[4][i], number[5][i]}, back});
+    }
+    for (Trace* on : {&through, &mirrored}) {
+      on->Run(geometry.value(), target);
+      const auto missed = std::count(on->primitive.begin(), on->primitive.end(), kNoPrimitive);
+      report.Expect(missed == static_cast<std::ptrdiff_t>(n),
+                    fmt::format("{} of {} rays meet the plane that they {}",
+                                static_cast<std::ptrdiff_t>(n) - missed, n,
+                                on == &through ? "went through" : "are mirrored by"));
     }
   });
 }

@@ -66,17 +66,21 @@ void UnitsOfLength(Report& report) {
   for (const int power : {-60, -30, 30, 60}) {
     Transform transform;
     transform.linear = glm::dmat3(std::ldexp(1.0, power));
-    ExpectNearDouble(report, Placed(Still(5), transform), 8, fmt::format("2^{} large", power));
+    // A ground and a bead, whose edge functions leave the range of float, and a lamp that fades
+    // with the square of distances, which do.
+    Scene scene = Still(500);
+    Mesh bead = SmoothBall(8);
+    for (glm::vec3& p : bead.positions) p = p * 0.1f + glm::vec3(-0.1f, -0.9f, -2.5f);
+    scene.objects.push_back({"bead", bead, 0});
+    std::get<PointLight>(scene.lights[0].source).falloff = {0, 0, std::ldexp(0.05, -2 * power)};
+    ExpectNearDouble(report, Placed(scene, transform), 8, fmt::format("2^{} large", power));
   }
 }
 
 void HugeGround(Report& report) {
   for (double half_size = 1e2; half_size < 2e7; half_size *= 10) {
     for (const double degrees : {0, 12}) {
-      // Through the origin: corners are rounded to float, and a plane far from it would move.
-      Transform up;
-      up.translation = Vec3d(0, 1, 0);
-      const Scene scene = Placed(Placed(Still(half_size), up), RotationAbout({0, 0, 1}, degrees));
+      const Scene scene = Placed(Still(half_size), RotationAbout({0, 0, 1}, degrees));
       ExpectNearDouble(report, scene, 8, fmt::format("a ground of {:g}", half_size));
     }
   }

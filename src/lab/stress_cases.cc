@@ -67,7 +67,7 @@ constexpr Case kCases[] = {
     {"any-size", "triangles of half size 2^-126 to 2^126: hit", kRays, AnySize},
     {"giants-and-odd-rays", "a sky of 1e12, t_min < 0, directions of 1e-21: right, and not slow",
      kRays, GiantsAndOddRays},
-    {"going-on", "from a hit on a square's diagonal: not the square again", kRays, GoingOn},
+    {"going-on", "from hits on a slanted square's diagonal: not the square again", kRays, GoingOn},
     {"random-scenes", "random scenes: every primitive, tree and target agree", kRays, RandomScenes},
     {"clear-glass", "ior 1: undeviated, no reflection", kPictures, ClearGlass},
     {"extreme-glass", "ior 1e-3 to 1e3: no light is made, the same bits", kPictures, ExtremeGlass},

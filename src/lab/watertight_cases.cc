@@ -71,6 +71,7 @@ void NoMiss(Report& report) {
 }
 
 void SingleHit(Report& report) {
+  std::uint64_t at_both = 0;
   for (std::uint32_t seed = 0; seed < (report.is_thorough() ? 10u : 3u); ++seed) {
     for (const std::uint32_t rings : {2u, 5u, 16u, report.is_thorough() ? 128u : 24u}) {
       Random random(seed);
@@ -89,11 +90,14 @@ void SingleHit(Report& report) {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto shear = scalar::ShearOf(rays[i].direction);
         Hit first{kInfinity};
+        int met = 0;
         for (const std::uint32_t id : beside[i]) {
           const auto hit = scalar::HitTriangle(rays[i], shear, triangles, id);
+          met += hit.has_value();
           if (!hit || hit->t > first.t || (hit->t == first.t && id > first.primitive)) continue;
           first = {hit->t, id};
         }
+        at_both += met == 2;
         report.Expect(IsHit(first), "neither triangle at an edge is hit", &rays[i]);
         report.Expect(hits[i].primitive == first.primitive,
                       fmt::format("{} is reported where {} is the first at an edge",
@@ -102,6 +106,9 @@ void SingleHit(Report& report) {
       }
     }
   }
+  report.Expect(at_both > 0, "no ray meets both triangles at an edge");
+  if (!report.is_thorough()) return;
+  report.Note(fmt::format("{} rays meet both triangles at an edge", at_both));
 }
 
 }  // namespace sheaf::stress
