@@ -4,8 +4,10 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -121,6 +123,18 @@ void RegisterFeature(const std::string& name, const Scene& with, const Scene& wi
   add("forced", without, Skips::kOff);
 }
 
+// The scene with an image on its first material, filtered across footprints.
+Scene WithTexture(Scene scene) {
+  auto image = std::make_shared<Image>(Image{"", 1024, 1024, {}});
+  std::uint32_t noise = 1;
+  for (int i = 0; i < 1024 * 1024; ++i) {
+    noise = noise * 1664525u + 1013904223u;
+    image->texels.push_back(0xff000000u | noise >> 8);
+  }
+  scene.materials.at(0).base_colour = Texture{image};
+  return scene;
+}
+
 void RegisterFeatures(const Scene& crystal_ball, const std::string& target) {
   Scene with = crystal_ball;
   for (Material& material : with.materials) material.reflect = Colour(0.2);
@@ -170,6 +184,9 @@ int main(int argc, char** argv) {
     }
   }
   RegisterFeatures(crystal_ball, targets.front());
+  for (const auto& [title, plain] : scenes) {
+    if (title == "knot") RegisterFeature("texture", WithTexture(plain), plain, targets.front());
+  }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
   benchmark::RunSpecifiedBenchmarks();

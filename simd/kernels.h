@@ -4,9 +4,11 @@
 
 #include "simd/blend_vertices.h"
 #include "simd/face_light.h"
+#include "simd/find_footprints.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
 #include "simd/report_target.h"
+#include "simd/sample_texture.h"
 #include "simd/shade_ambient.h"
 #include "simd/shade_light.h"
 #include "simd/spawn_rays.h"
@@ -21,6 +23,8 @@
   X(ReportTarget, report_target)       \
   X(GeneratePrimary, generate_primary) \
   X(BlendVertices, blend_vertices)     \
+  X(FindFootprints, find_footprints)   \
+  X(SampleTexture, sample_texture)     \
   X(ShadeAmbient, shade_ambient)       \
   X(FaceLight, face_light)             \
   X(GenerateShadow, generate_shadow)

@@ -6,6 +6,7 @@
 #define SHEAF_SIMD_MATERIAL_INL_H_
 #endif
 
+#include "simd/filter_checker-inl.h"
 #include "simd/math-inl.h"
 #include "simd/query.h"
 #include "simd/shading.h"
@@ -34,6 +35,16 @@ HWY_INLINE void LoadPattern(D d, const MaterialData<Real>& material,
   if (!(material.needs & kNeedsCoordinates) || material.kind == BaseColour::kTexture) return;
   const V u = hn::Mul(hn::LoadU(d, surfaces.u + i), hn::Set(d, material.cells[0]));
   const V v = hn::Mul(hn::LoadU(d, surfaces.v + i), hn::Set(d, material.cells[1]));
+  if (material.kind == BaseColour::kFilteredChecker) {
+    const V share = EvenShare(
+        d, u, v, hn::Mul(hn::LoadU(d, surfaces.footprint_u + i), hn::Set(d, material.cells[0])),
+        hn::Mul(hn::LoadU(d, surfaces.footprint_v + i), hn::Set(d, material.cells[1])));
+    const V rest = hn::Sub(hn::Set(d, Real(1)), share);
+    r = hn::Add(hn::Mul(r, share), hn::Mul(hn::Set(d, material.odd[0]), rest));
+    g = hn::Add(hn::Mul(g, share), hn::Mul(hn::Set(d, material.odd[1]), rest));
+    b = hn::Add(hn::Mul(b, share), hn::Mul(hn::Set(d, material.odd[2]), rest));
+    return;
+  }
   const V cell = hn::Add(hn::Floor(u), hn::Floor(v));
   const V half = hn::Floor(hn::Mul(cell, hn::Set(d, Real(0.5))));
   const auto odd = hn::Ne(cell, hn::Add(half, half));

@@ -6,7 +6,7 @@
 
 namespace sheaf {
 
-enum class BaseColour : std::uint32_t { kConstant, kChecker, kTexture };
+enum class BaseColour : std::uint32_t { kConstant, kChecker, kFilteredChecker, kTexture };
 
 // What a material asks for; what it does not ask for is skipped. Asking for more changes no bit.
 inline constexpr std::uint32_t kNeedsCoordinates = 1;    // u and v, for its base colour
@@ -20,6 +20,10 @@ inline constexpr std::uint32_t kNeedsAll = 127;
 // Shading terms that vary from point to point: SurfaceFields has them. Not among all, because it is
 // the material's textures that make them.
 inline constexpr std::uint32_t kNeedsTerms = 128;
+// The width of a ray's cone where it meets the surface, and how much of the surface coordinates
+// that covers: src/scalar/footprint.h. Not among all either: textures and checkers make them.
+inline constexpr std::uint32_t kNeedsWidth = 256;
+inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
 enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };
@@ -85,6 +89,7 @@ constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
          (material.kd > 0 || material.ks > 0 ? kNeedsLights : 0) |
          (material.ks > 0 ? kNeedsHighlight : 0) |
          (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
+         (material.kind == BaseColour::kFilteredChecker ? kNeedsFootprint | kNeedsWidth : 0) |
          (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
          (transmits ? kNeedsTransmission : 0);
 }
@@ -99,6 +104,14 @@ constexpr bool LetsLightPass(const MaterialData<Real>& material) {
 enum class TextureWrap : std::uint32_t { kRepeat, kMirror, kClamp };
 enum class TextureFilter : std::uint32_t { kNearest, kLinear };
 
+inline constexpr int kMaxTextureLevels = 15;
+
+// Where a level's texels begin among those of the levels after the first, and its sides.
+struct TextureLevels {
+  std::int32_t first[kMaxTextureLevels] = {};
+  std::int32_t width[kMaxTextureLevels] = {}, height[kMaxTextureLevels] = {};
+};
+
 // Rows from the top, where v is 0; a texel's channels are the bytes of its number from the lowest:
 // r, g, b, a.
 template <typename Real>
@@ -111,6 +124,18 @@ struct TextureData {
   // Where the surface's (u, v) lies on the image: rows of a, b, c with a u + b v + c.
   bool is_moved = false;
   Real to_u[3] = {}, to_v[3] = {};
+  // Level 0 is the image; each further one is half as large, down to a texel. A texture that is not
+  // filtered has one level.
+  int level_count = 1;
+  Real coarsest = 1;                      // 2 to the power of the last level
+  const std::uint32_t* coarse = nullptr;  // texels of the levels after the first
+  TextureLevels levels = {};
+};
+
+// How wide a ray's cone is at the eye, and how much wider it is a unit of length on.
+template <typename Real>
+struct PixelCone {
+  Real width = 0, spread = 0;
 };
 
 enum class LightKind : std::uint32_t {

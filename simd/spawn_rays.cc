@@ -167,6 +167,9 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
       CompactStore(d, wr, order, paths.throughput_r + at);
       CompactStore(d, wg, order, paths.throughput_g + at);
       CompactStore(d, wb, order, paths.throughput_b + at);
+      if (material.needs & kNeedsWidth) {
+        CompactStore(d, hn::LoadU(d, surfaces.width + i), order, paths.width + at);
+      }
       at += CountLanes(d, kept);
     };
 

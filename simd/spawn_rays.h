@@ -8,11 +8,11 @@
 namespace sheaf {
 
 // Appends the children of surfaces[0, count), in order and without gaps, from position 0 of each
-// output: rays, the position of the parent in its stream (`paths.parent`) and the throughput;
-// leaves paths.pixel alone. `parents` gives the throughputs of the ray stream; null pointers there
-// stand for 1. A child none of whose throughputs is over `min_throughput`, which is at least 0, is
-// left out. Bits: as sheaf::scalar::Spawn. Reads PaddedCount(count) lanes; writes
-// StreamCapacity(count) at most.
+// output: rays, the position of the parent in its stream (`paths.parent`), the throughput
+// and, with kNeedsWidth, the width; leaves paths.pixel alone. `parents` gives the throughputs of
+// the ray stream; null pointers there stand for 1. A child none of whose throughputs is over
+// `min_throughput`, which is at least 0, is left out. Bits: as sheaf::scalar::Spawn. Reads
+// PaddedCount(count) lanes; writes StreamCapacity(count) at most.
 template <typename Real>
 using SpawnRaysKernel = SpawnCounts(const MaterialData<Real>& material,
                                     const SurfaceView<Real>& surfaces, std::uint32_t count,

@@ -53,10 +53,11 @@ struct PathFields {
   Field<std::uint32_t> pixel;                            // index into the tile
   Field<std::uint32_t> parent;                           // position in the stream that spawned it
   Field<Real> throughput_r, throughput_g, throughput_b;  // throughput since the eye
+  Field<Real> width;  // of the ray's cone where it starts; with kNeedsWidth
 
   static constexpr auto kFields =
       std::make_tuple(&PathFields::pixel, &PathFields::parent, &PathFields::throughput_r,
-                      &PathFields::throughput_g, &PathFields::throughput_b);
+                      &PathFields::throughput_g, &PathFields::throughput_b, &PathFields::width);
 };
 
 // What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
@@ -99,6 +100,8 @@ struct SurfaceFields {
   Field<Real> kd, ks, shininess;
   Field<Real> reflect_r, reflect_g, reflect_b;
   Field<Real> transmit_r, transmit_g, transmit_b;
+  Field<Real> width;                     // of the ray's cone; with kNeedsWidth
+  Field<Real> footprint_u, footprint_v;  // how much of u and v it covers; with kNeedsFootprint
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -113,7 +116,20 @@ struct SurfaceFields {
       &SurfaceFields::kd, &SurfaceFields::ks, &SurfaceFields::shininess, &SurfaceFields::reflect_r,
       &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
       &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
-      &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend);
+      &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
+      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v);
+};
+
+// What textures say of surfaces, one an element. Metallic and roughness before their factors.
+template <typename Real, template <typename> class Field>
+struct TexelFields {
+  Field<Real> r, g, b;  // of the base colour, or of a normal map
+  Field<Real> alpha, metallic, roughness, occlusion, emission_r, emission_g, emission_b;
+
+  static constexpr auto kFields =
+      std::make_tuple(&TexelFields::r, &TexelFields::g, &TexelFields::b, &TexelFields::alpha,
+                      &TexelFields::metallic, &TexelFields::roughness, &TexelFields::occlusion,
+                      &TexelFields::emission_r, &TexelFields::emission_g, &TexelFields::emission_b);
 };
 
 // Linear RGB, one an element.
@@ -158,6 +174,10 @@ using ColourView = ColourFields<Real, ConstField>;
 template <typename Real>
 using ColourOutput = ColourFields<Real, MutableField>;
 template <typename Real>
+using TexelView = TexelFields<Real, ConstField>;
+template <typename Real>
+using TexelOutput = TexelFields<Real, MutableField>;
+template <typename Real>
 using IncidenceView = IncidenceFields<Real, ConstField>;
 template <typename Real>
 using IncidenceOutput = IncidenceFields<Real, MutableField>;
@@ -175,6 +195,14 @@ template <typename A, typename F>
 constexpr void ForEachField(A& a, F f) {
   std::apply([&](auto... member) { (f(a.*member), ...); }, A::kFields);
 }
+
+// The cones of a stream's rays: src/scalar/footprint.h.
+template <typename Real>
+struct ConeView {
+  const Real* width;  // where each starts; null: all_width for all
+  Real all_width;
+  Real spread;  // how much wider a cone is a unit of length on
+};
 
 // A list of hits that are treated alike: positions in the ray stream, and what each ray hit there.
 struct HitBatch {

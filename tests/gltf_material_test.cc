@@ -227,6 +227,24 @@ TEST_CASE("glTF of specular colour and glossiness") {
             .shininess == doctest::Approx(30));
 }
 
+TEST_CASE("glTF samplers choose the filter") {
+  const json material = {{"pbrMetallicRoughness", {{"baseColorTexture", kTexture0}}}};
+  const auto filter_of = [&](const json& sampler) {
+    json gltf = TexturedGltf(material);
+    gltf["samplers"] = {sampler};
+    gltf["textures"][0]["sampler"] = 0;
+    const Read read = ReadGltf(gltf);
+    return std::get<Texture>(read.material.base_colour).filter;
+  };
+  CHECK(filter_of(json::object()) == Filter::kMip);
+  for (const int mipmapped : {9984, 9985, 9986, 9987}) {
+    CHECK(filter_of({{"minFilter", mipmapped}, {"magFilter", 9729}}) == Filter::kMip);
+  }
+  CHECK(filter_of({{"minFilter", 9728}}) == Filter::kLinear);
+  CHECK(filter_of({{"minFilter", 9729}}) == Filter::kLinear);
+  CHECK(filter_of({{"magFilter", 9728}}) == Filter::kNearest);
+}
+
 TEST_CASE("glTF images that cannot be had leave the factor") {
   const json material = {
       {"pbrMetallicRoughness",

@@ -259,8 +259,9 @@ TEST_CASE("coordinates are scaled, turned and moved") {
 Texture RandomTexture(Random& random) {
   auto image = std::make_shared<Image>(Image{"", 4, 3, {}});
   for (int i = 0; i < 12; ++i) image->texels.push_back(static_cast<std::uint32_t>(random()));
+  constexpr Filter kFilters[] = {Filter::kMip, Filter::kLinear, Filter::kNearest};
   Texture texture{image, random() % 2 ? Transfer::kLinear : Transfer::kSrgb, Wrap::kMirror,
-                  Wrap::kRepeat, random() % 2 ? Filter::kLinear : Filter::kNearest};
+                  Wrap::kRepeat, kFilters[random() % 3]};
   if (random() % 2) {
     texture.transform = {{Uniform(random, -1, 1), 0.25}, {2, -1.5}, Uniform(random, -180, 180)};
   }
@@ -291,6 +292,25 @@ TEST_CASE("materials that vary have the same bits on every target") {
       options.precision = precision;
       CheckSameBits(scene, scene.cameras[0], options);
     }
+  }
+}
+
+TEST_CASE("filters are written and read back") {
+  const Folder folder;
+  REQUIRE(WritePng({1, 1, {10, 20, 30}}, Transfer::kLinear, folder / "t.png").ok());
+  const std::string text = R"({"materials": [
+    {"name": "a", "base_colour": {"texture": {"image": "t.png"}}},
+    {"name": "b", "base_colour": {"texture": {"image": "t.png", "filter": "linear"}}},
+    {"name": "c", "base_colour": {"checker": {"filter": true}}},
+    {"name": "d", "base_colour": {"checker": {}}}],
+    "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0]}]})";
+  const Scene first = ReadOrFail(folder.Write("a.json", text));
+  const Scene again = ReadOrFail(folder.Write("b.json", SceneJsonText(first)));
+  for (const Scene* scene : {&first, &again}) {
+    CHECK(std::get<Texture>(scene->materials[0].base_colour).filter == Filter::kMip);
+    CHECK(std::get<Texture>(scene->materials[1].base_colour).filter == Filter::kLinear);
+    CHECK(std::get<Checker>(scene->materials[2].base_colour).is_filtered);
+    CHECK(!std::get<Checker>(scene->materials[3].base_colour).is_filtered);
   }
 }
 

@@ -24,7 +24,7 @@ TEST_CASE("textures, wraps and filters have the same bits on every target") {
   const Folder folder;
   REQUIRE(WritePng(Chequered(), Transfer::kLinear, folder / "t.png").ok());
   for (const char* wrap : {"\"repeat\"", "\"mirror\"", "[\"clamp\", \"repeat\"]"}) {
-    for (const char* filter : {"linear", "nearest"}) {
+    for (const char* filter : {"linear", "nearest", "mip"}) {
       const std::string text = std::string(R"({"materials": [{"name": "a", "kd": 0.5, "ambient": 1,
         "base_colour": {"texture": {"image": "t.png", "wrap": )") +
                                wrap + R"(, "filter": ")" + filter +

@@ -11,8 +11,16 @@ constexpr bool kHasOpenExr = true;
 constexpr bool kHasOpenExr = false;
 #endif
 
+#ifdef SHEAF_HAS_OPENIMAGEIO
+constexpr bool kHasOpenImageIo = true;
+#else
+constexpr bool kHasOpenImageIo = false;
+#endif
+
 constexpr OptionalPart kOptionalParts[] = {
     {"OpenEXR", "reads and writes .exr", kHasOpenExr},
+    {"OpenImageIO", "reads textures and environments of BMP, TGA, TIFF, WebP, HDR and EXR",
+     kHasOpenImageIo},
 };
 
 }  // namespace

@@ -138,7 +138,13 @@ void GltfTextures::SetSampler(int index, Texture* out) const {
   };
   out->wrap_u = wrap(sampler.wrapS);
   out->wrap_v = wrap(sampler.wrapT);
-  if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) out->filter = Filter::kNearest;
+  const int minified = sampler.minFilter;
+  if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) {
+    out->filter = Filter::kNearest;
+  } else if (minified == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+             minified == TINYGLTF_TEXTURE_FILTER_LINEAR) {
+    out->filter = Filter::kLinear;
+  }
 }
 
 }  // namespace sheaf

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "src/formats/other_images.h"
 #include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
@@ -117,17 +118,7 @@ Result<Image> DecodeJpeg(std::string_view bytes) {
 
 // Formats that are told by their first bytes, to say what an image is instead.
 constexpr std::pair<std::string_view, const char*> kOtherFormats[] = {
-    {"RIFF", "a WebP"},
-    {"\xabKTX 20", "a KTX2"},
-    {"\xabKTX 11", "a KTX"},
-    {"DDS ", "a DDS"},
-    {"BM", "a BMP"},
-    {"II*", "a TIFF"},
-    {"MM", "a TIFF"},
-    {"GIF8", "a GIF"},
-    {"#?RADIANCE", "a Radiance HDR"},
-    {"#?RGBE", "a Radiance HDR"},
-    {"\x76\x2f\x31\x01", "an OpenEXR"}};
+    {"\xabKTX 20", "a KTX2"}, {"\xabKTX 11", "a KTX"}, {"DDS ", "a DDS"}, {"GIF8", "a GIF"}};
 
 Error UnknownFormat(std::string_view bytes) {
   for (const auto& [start, name] : kOtherFormats) {
@@ -141,9 +132,11 @@ Error UnknownFormat(std::string_view bytes) {
 }  // namespace
 
 Result<Image> DecodeImage(std::string_view bytes) {
-  Result<Image> image = bytes.starts_with("\x89PNG")        ? DecodePng(bytes)
-                        : bytes.starts_with("\xff\xd8\xff") ? DecodeJpeg(bytes)
-                                                            : UnknownFormat(bytes);
+  const bool is_png = bytes.starts_with("\x89PNG"), is_jpeg = bytes.starts_with("\xff\xd8\xff");
+  if (!is_png && !is_jpeg) {
+    return OtherImageKind(bytes) ? DecodeOtherImage(bytes) : UnknownFormat(bytes);
+  }
+  Result<Image> image = is_png ? DecodePng(bytes) : DecodeJpeg(bytes);
   if (image) ToNumbers(image.value());
   return image;
 }

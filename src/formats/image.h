@@ -1,4 +1,5 @@
-// Images for textures: PNG by libpng, JPEG by libjpeg-turbo.
+// Images for textures: PNG by libpng, JPEG by libjpeg-turbo, others by OpenImageIO where it is
+// built in.
 #ifndef SHEAF_FORMATS_IMAGE_H_
 #define SHEAF_FORMATS_IMAGE_H_
 
@@ -13,7 +14,7 @@
 
 namespace sheaf {
 
-// What the bytes of a PNG or JPEG show, in 8 bits. The error's message names no file; it refuses
+// What the bytes of a picture show, in 8 bits. The error's message names no file; it refuses
 // sides above kMaxTextureSide and pictures with more pixels than their bytes can hold.
 Result<Image> DecodeImage(std::string_view bytes);
 

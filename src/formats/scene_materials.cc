@@ -69,6 +69,7 @@ Checker ReadChecker(const JsonCursor& value, Transfer transfer) {
   ReadPictureColour(object.Optional("even"), transfer, &checker.even);
   ReadPictureColour(object.Optional("odd"), transfer, &checker.odd);
   ReadPair(object.Optional("cells"), kCells, "[cells along u, cells along v]", &checker.cells);
+  object.Optional("filter").ReadBoolean(&checker.is_filtered);
   object.Finish();
   return checker;
 }
@@ -100,8 +101,8 @@ constexpr std::pair<std::string_view, Wrap> kWraps[] = {
     {"repeat", Wrap::kRepeat}, {"mirror", Wrap::kMirror}, {"clamp", Wrap::kClamp}};
 constexpr std::pair<std::string_view, AlphaMode> kAlphaModes[] = {
     {"opaque", AlphaMode::kOpaque}, {"mask", AlphaMode::kMask}, {"blend", AlphaMode::kBlend}};
-constexpr std::pair<std::string_view, Filter> kFilters[] = {{"linear", Filter::kLinear},
-                                                            {"nearest", Filter::kNearest}};
+constexpr std::pair<std::string_view, Filter> kFilters[] = {
+    {"mip", Filter::kMip}, {"linear", Filter::kLinear}, {"nearest", Filter::kNearest}};
 
 TextureTransform ReadTextureTransform(const JsonCursor& value) {
   TextureTransform transform;
@@ -253,10 +254,11 @@ Json BaseColourJson(const Material& material) {
   return Match(
       material.base_colour, [](const Colour& colour) { return VectorJson(colour); },
       [](const Checker& checker) -> Json {
-        return {{"checker",
-                 {{"even", VectorJson(checker.even)},
-                  {"odd", VectorJson(checker.odd)},
-                  {"cells", {checker.cells.x, checker.cells.y}}}}};
+        Json members = {{"even", VectorJson(checker.even)},
+                        {"odd", VectorJson(checker.odd)},
+                        {"cells", {checker.cells.x, checker.cells.y}}};
+        if (checker.is_filtered) members["filter"] = true;
+        return {{"checker", members}};
       },
       [](const Texture& texture) -> Json {
         return {{"texture", TextureJson(texture)}};

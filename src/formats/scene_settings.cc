@@ -9,7 +9,9 @@
 
 #include "sheaf/formats.h"
 #include "src/core/match.h"
+#include "src/formats/other_images.h"
 #include "src/formats/printable.h"
+#include "src/formats/read_file.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -23,6 +25,26 @@ constexpr NumberRange kRotation{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kStops{-kMaxEv, kMaxEv, "a number in [-64, 64], or \"auto\""};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
 
+// The light of a picture file, of its ending's format or one that its bytes show.
+Result<FloatImage> ReadLight(const std::string& path) {
+  if (!CheckPicturePath(path)) {
+    const Result<std::string> bytes = ReadWholeFile(path);
+    if (bytes && OtherImageKind(bytes.value())) return DecodeOtherLight(bytes.value());
+  }
+  Result<ReadPictureResult> read = ReadPicture(path);
+  if (!read) return read.error();
+  const ReadPictureResult& picture = read.value();
+  const Film& film = picture.film;
+  FloatImage image{{}, film.width, film.height, {film.rgb.begin(), film.rgb.end()}};
+  // What a display shows is sRGB unless the file says that it is light.
+  if (picture.is_display && !picture.is_linear) {
+    for (float& light : image.rgb) {
+      light = static_cast<float>(SrgbDecode(static_cast<double>(light)));
+    }
+  }
+  return image;
+}
+
 // Nothing where the picture cannot be had, which is an error.
 std::shared_ptr<const FloatImage> ReadFloatImage(const JsonCursor& value, ColourSource* source) {
   std::string reference;
@@ -33,23 +55,15 @@ std::shared_ptr<const FloatImage> ReadFloatImage(const JsonCursor& value, Colour
   };
   const Result<std::string> path = source->files.Resolve(source->path, reference);
   if (!path) return failed(path.error().message);
-  Result<ReadPictureResult> read = ReadPicture(path.value());
+  Result<FloatImage> read = ReadLight(path.value());
   if (!read) return failed(read.error().message);
-  const ReadPictureResult& picture = read.value();
-  const Film& film = picture.film;
-  if (film.width > kMaxTextureSide || film.height > kMaxTextureSide) {
+  FloatImage& image = read.value();
+  if (image.width > kMaxTextureSide || image.height > kMaxTextureSide) {
     return failed(
-        fmt::format("{}x{}; sides may be 1 to {}", film.width, film.height, kMaxTextureSide));
+        fmt::format("{}x{}; sides may be 1 to {}", image.width, image.height, kMaxTextureSide));
   }
-  FloatImage image{std::filesystem::path(reference).filename().string(),
-                   film.width,
-                   film.height,
-                   {film.rgb.begin(), film.rgb.end()}};
-  for (float& light : image.rgb) {
-    // What a display shows is sRGB unless the file says that it is light.
-    if (picture.is_display && !picture.is_linear) {
-      light = static_cast<float>(SrgbDecode(static_cast<double>(light)));
-    }
+  image.name = std::filesystem::path(reference).filename().string();
+  for (const float light : image.rgb) {
     if (!(light >= 0 && light <= std::numeric_limits<float>::max())) {
       return failed("it has a number that is negative or not finite");
     }

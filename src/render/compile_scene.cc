@@ -14,8 +14,8 @@
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
 #include "src/scalar/sin_cos.h"
+#include "src/scene/decode_table.h"
 #include "src/scene/projection.h"
-#include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
@@ -53,7 +53,10 @@ MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambie
       [&](const Colour& colour) {
         StoreBaseColour(BaseColour::kConstant, {colour, colour}, data);
       },
-      [&](const Checker& checker) { StoreBaseColour(BaseColour::kChecker, checker, data); },
+      [&](const Checker& checker) {
+        StoreBaseColour(checker.is_filtered ? BaseColour::kFilteredChecker : BaseColour::kChecker,
+                        checker, data);
+      },
       [&](const Texture& texture) {
         StoreBaseColour(BaseColour::kTexture, {texture.factor, texture.factor}, data);
       });
@@ -69,17 +72,6 @@ MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambie
   Store(material.attenuation, data.attenuation);
   data.attenuation_distance = static_cast<Real>(placement.Length(material.attenuation_distance));
   return data;
-}
-
-// Linear light by byte.
-template <typename Real>
-std::vector<Real> DecodeTable(Transfer transfer) {
-  std::vector<Real> table;
-  for (int byte = 0; byte < 256; ++byte) {
-    const double share = byte / 255.0;
-    table.push_back(static_cast<Real>(transfer == Transfer::kSrgb ? SrgbDecode(share) : share));
-  }
-  return table;
 }
 
 TextureWrap WrapOf(Wrap wrap) {
@@ -109,6 +101,22 @@ void StoreTransform(const TextureTransform& transform, TextureData<Real>& data) 
   }
 }
 
+// The levels that the texture is seen through.
+template <typename Real>
+void StoreLevels(const Texture& texture, CompiledScene<Real>& compiled, TextureData<Real>& data) {
+  const Image& image = *texture.image;
+  data.levels.width[0] = image.width;
+  data.levels.height[0] = image.height;
+  if (texture.filter != Filter::kMip) return;
+  auto [place, is_new] = compiled.chains.try_emplace({&image, texture.transfer});
+  MipChain& chain = place->second;
+  if (is_new) chain = BuildMipChain(image, texture.transfer);
+  data.level_count = chain.level_count;
+  data.coarsest = static_cast<Real>(1 << (chain.level_count - 1));
+  data.coarse = chain.texels.data();
+  data.levels = chain.levels;
+}
+
 // The index of the texture among the compiled ones.
 template <typename Real>
 std::uint32_t CompileTexture(const Texture& texture, CompiledScene<Real>& compiled) {
@@ -125,6 +133,7 @@ std::uint32_t CompileTexture(const Texture& texture, CompiledScene<Real>& compil
       WrapOf(texture.wrap_v),
       texture.filter == Filter::kNearest ? TextureFilter::kNearest : TextureFilter::kLinear};
   StoreTransform(texture.transform, data);
+  StoreLevels(texture, compiled, data);
   compiled.textures.push_back(data);
   return static_cast<std::uint32_t>(compiled.textures.size()) - 1;
 }
@@ -286,6 +295,29 @@ Colour MeanOf(const FloatImage& image) {
   return sum;
 }
 
+// What materials ask for besides their own data: their textures' levels, and the cones of rays that
+// may come to such materials.
+template <typename Real>
+void AddFootprintNeeds(CompiledScene<Real>& compiled) {
+  bool has_cones = false;
+  for (MaterialData<Real>& material : compiled.materials) {
+    const FinishData<Real>& finish = material.finish;
+    const auto has_levels = [&](std::uint32_t texture) {
+      return texture != kNoTexture && compiled.textures[texture].level_count > 1;
+    };
+    if ((material.kind == BaseColour::kTexture && has_levels(material.texture)) ||
+        has_levels(finish.emission) || has_levels(finish.metallic_roughness) ||
+        has_levels(finish.occlusion) || has_levels(finish.normals)) {
+      material.needs |= kNeedsFootprint | kNeedsWidth;
+    }
+    has_cones = has_cones || (material.needs & kNeedsFootprint) != 0;
+  }
+  if (!has_cones) return;
+  for (MaterialData<Real>& material : compiled.materials) {
+    if (material.needs & kNeedsChildren) material.needs |= kNeedsWidth;
+  }
+}
+
 }  // namespace
 
 Colour AmbientLightOf(const Settings& settings) {
@@ -314,6 +346,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     data.needs = NeedsOf(data);
     compiled.materials.push_back(data);
   }
+  AddFootprintNeeds(compiled);
   for (const Object& object : scene.objects) {
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr) continue;
@@ -360,11 +393,30 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height,
   return data;
 }
 
+template <typename Real>
+PixelCone<Real> CompileCone(const CameraData<Real>& camera, double samples_a_pixel) {
+  constexpr double kQuarterTurn = 1.5707963267948966;
+  const double part = 1 / std::sqrt(samples_a_pixel);
+  const auto up = FromArray(camera.up).template To<double>();
+  switch (camera.model) {
+    case CameraModel::kPerspective:
+      return {0, static_cast<Real>(std::sqrt(Dot(up, up)) * part)};
+    case CameraModel::kOrthographic:
+      return {static_cast<Real>(std::sqrt(Dot(up, up)) * part), 0};
+    case CameraModel::kEquirectangular:
+    case CameraModel::kFisheye:
+      break;
+  }
+  return {0, static_cast<Real>(static_cast<double>(camera.turns_y) * kQuarterTurn * part)};
+}
+
 template struct CompiledScene<float>;
 template struct CompiledScene<double>;
 template CompiledScene<float> CompileScene(const Scene&, const ScenePlacement&);
 template CompiledScene<double> CompileScene(const Scene&, const ScenePlacement&);
 template CameraData<float> CompileCamera(const Camera&, int, int, const ScenePlacement&);
 template CameraData<double> CompileCamera(const Camera&, int, int, const ScenePlacement&);
+template PixelCone<float> CompileCone(const CameraData<float>&, double);
+template PixelCone<double> CompileCone(const CameraData<double>&, double);
 
 }  // namespace sheaf

@@ -2,12 +2,15 @@
 #ifndef SHEAF_RENDER_COMPILE_SCENE_H_
 #define SHEAF_RENDER_COMPILE_SCENE_H_
 
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "sheaf/error.h"
 #include "sheaf/scene.h"
 #include "simd/shading.h"
+#include "src/render/build_mip_chain.h"
 #include "src/render/compile_geometry.h"
 #include "src/render/place_scene.h"
 #include "src/stream/frame_view.h"
@@ -21,6 +24,8 @@ struct CompiledScene {
   std::vector<MaterialData<Real>> materials;
   std::vector<TextureData<Real>> textures;
   std::vector<std::shared_ptr<const Image>> images;  // that the textures show
+  // Of images that are seen through Filter::kMip, which textures share.
+  std::map<std::pair<const Image*, Transfer>, MipChain> chains;
   std::vector<Real> decode[2];  // by Transfer, 256 each; empty where no texture has it
   std::vector<LightData<Real>> lights;
   Real background[3];
@@ -41,6 +46,10 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
 template <typename Real>
 CameraData<Real> CompileCamera(const Camera& camera, int width, int height,
                                const ScenePlacement& placement = {});
+
+// The cone of a ray that stands for one of `samples_a_pixel` even parts of a pixel.
+template <typename Real>
+PixelCone<Real> CompileCone(const CameraData<Real>& camera, double samples_a_pixel);
 
 }  // namespace sheaf
 

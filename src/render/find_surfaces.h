@@ -5,6 +5,7 @@
 #include "simd/kernels.h"
 #include "simd/streams.h"
 #include "src/render/bin_hits.h"
+#include "src/render/ray_queue.h"
 #include "src/stream/frame_view.h"
 #include "src/stream/stream.h"
 
@@ -25,18 +26,30 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
            &Fields::emission_g, &Fields::emission_b, &Fields::kd, &Fields::ks, &Fields::shininess,
            &Fields::reflect_r, &Fields::reflect_g, &Fields::reflect_b, &Fields::transmit_r,
            &Fields::transmit_g, &Fields::transmit_b);
-  return ~(coordinates | faces | curves | tints | terms) |
+  const std::uint64_t widths = FieldBit(&Fields::width);
+  const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
+  return ~(coordinates | faces | curves | tints | terms | widths | footprints) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
-         (needs & kNeedsTerms ? terms : 0);
+         (needs & kNeedsTerms ? terms : 0) | (needs & kNeedsWidth ? widths : 0) |
+         (needs & kNeedsFootprint ? footprints : 0);
+}
+
+// The fields of texels that these materials look up, likewise.
+template <typename Real>
+constexpr std::uint64_t TexelFieldsFor(std::uint32_t needs) {
+  using Fields = TexelView<Real>;
+  if (needs & kNeedsTerms) return ~std::uint64_t{0};
+  return FieldBit(&Fields::r) | FieldBit(&Fields::g) | FieldBit(&Fields::b);
 }
 
 // Writes the surfaces of the bin's hits to surfaces[0, bin.batch.count), as far as the bin's
-// material needs them, and returns what to read them through.
+// material needs them, and returns what to read them through. Leaves in `texels` what textures say.
 template <typename Real>
 SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels,
-                               const HitBin& bin, const RayView<Real>& rays,
-                               const HitView<Real>& hits, SurfaceStream<Real>& surfaces);
+                               const HitBin& bin, const RayBatch<Real>& batch,
+                               const HitView<Real>& hits, SurfaceStream<Real>& surfaces,
+                               const TexelOutput<Real>& texels);
 
 }  // namespace sheaf
 

@@ -5,9 +5,10 @@
 namespace sheaf {
 namespace {
 
-// field[i] becomes field[order[i]].
+// field[i] becomes field[order[i]]. A null pointer is no field.
 template <typename T>
 void Permute(T* field, const std::vector<std::uint32_t>& order, std::vector<T>& scratch) {
+  if (!field) return;
   scratch.assign(field, field + order.size());
   for (std::size_t i = 0; i < order.size(); ++i) field[i] = scratch[order[i]];
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "simd/shading.h"
 #include "simd/streams.h"
 #include "src/stream/stream.h"
 
@@ -17,6 +18,12 @@ struct RayBatch {
   PathView<Real> paths;  // null pointers: ray i is of pixel i, with a throughput of 1
   std::uint32_t count = 0;
 };
+
+// The fields of paths in frames whose materials have `needs`, as bits for Stream::Reserve.
+template <typename Real>
+constexpr std::uint64_t PathFieldsFor(std::uint32_t needs) {
+  return needs & kNeedsWidth ? ~std::uint64_t{0} : ~FieldBit(&PathView<Real>::width);
+}
 
 // A sample's primary rays: one a pixel, from no surface, so that they need no paths.
 template <typename Real>
@@ -66,10 +73,10 @@ class RayQueue {
     most_ = n;
   }
   // Makes room for them: before the first is written, so that scenes without such rays have no
-  // memory for them.
-  void MakeRoom() {
+  // memory for them. `path_fields` are those of PathFieldsFor.
+  void MakeRoom(std::uint64_t path_fields) {
     rays_.Reserve(most_);
-    paths_.Reserve(most_);
+    paths_.Reserve(most_, path_fields);
   }
 
   void StartParents() {

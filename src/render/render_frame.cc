@@ -79,6 +79,9 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
       std::any_of(compiled.materials.begin(), compiled.materials.end(),
                   [](const MaterialData<Real>& material) { return material.attenuates; }),
       static_cast<Real>(1 / placement.scale)};
+  // With adaptive sampling a pixel's only sample stands for all of it.
+  const double parts = frame->view.is_adaptive() ? 1 : options.samples;
+  frame->view.cone = CompileCone(frame->view.camera, parts);
   if (skips == Skips::kOff) {
     frame->view.tree.skips_boxes = frame->view.tree.node_count == 0;
   }

@@ -19,6 +19,9 @@ scalar::Surface<Real> SurfaceIn(const SurfaceView<Real>& surfaces, std::uint32_t
   surface.normal = {surfaces.normal_x[i], surfaces.normal_y[i], surfaces.normal_z[i]};
   surface.face = {surfaces.face_x[i], surfaces.face_y[i], surfaces.face_z[i]};
   if (needs & kNeedsCoordinates) surface.u = surfaces.u[i], surface.v = surfaces.v[i];
+  if (needs & kNeedsFootprint) {
+    surface.footprint_u = surfaces.footprint_u[i], surface.footprint_v = surfaces.footprint_v[i];
+  }
   if (needs & kNeedsTint) {
     surface.tint = {surfaces.tint_r[i], surfaces.tint_g[i], surfaces.tint_b[i]};
   }

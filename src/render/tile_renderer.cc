@@ -121,8 +121,9 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& 
     const MaterialData<Real>& material = frame_.materials[bin.material];
     const std::uint32_t count = bin.batch.count;
     surfaces_.Reserve(batch.count, surface_fields_);
+    if (!frame_.textures.empty()) texels_.Reserve(batch.count, texel_fields_);
     const SurfaceView<Real> surfaces =
-        FindSurfaces(frame_, kernels_, bin, batch.rays, hits_.view(), surfaces_);
+        FindSurfaces(frame_, kernels_, bin, batch, hits_.view(), surfaces_, texels_.output());
     if (recorder) recorder->Record(bin, hits_.view(), surfaces);
     clock_.Charge(Phase::kSurface, count, count);
     // Where all rays met alike, surfaces stand in the order of rays.
@@ -144,8 +145,8 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& 
 template <typename Real>
 void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t count) {
-  next_reflected_.MakeRoom();
-  if (material.needs & kNeedsTransmission) next_refracted_.MakeRoom();
+  next_reflected_.MakeRoom(path_fields_);
+  if (material.needs & kNeedsTransmission) next_refracted_.MakeRoom(path_fields_);
   const SpawnCounts spawned = kernels_.spawn_rays(
       material, surfaces, count, parents, frame_.min_throughput, next_reflected_.next_rays(),
       next_reflected_.next_paths(), next_refracted_.next_rays(), next_refracted_.next_paths());
@@ -208,7 +209,7 @@ std::size_t TileRenderer<Real>::buffer_bytes() const {
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
   add(binner_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
   add(reflected_, refracted_, next_reflected_, next_refracted_, parent_order_);
-  add(hits_, surfaces_, ray_colours_, surface_colours_);
+  add(hits_, surfaces_, texels_, ray_colours_, surface_colours_);
   return sum;
 }
 
@@ -225,6 +226,8 @@ TileRenderer<Real>::TileRenderer(const FrameView<Real>& frame, const Kernels<Rea
       kernels_(kernels),
       stop_(stop),
       surface_fields_(SurfaceFieldsFor<Real>(NeedsOfAny(frame.materials))),
+      texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame.materials))),
+      path_fields_(PathFieldsFor<Real>(NeedsOfAny(frame.materials))),
       binner_(frame.materials.size()),
       lights_(frame, kernels_, rays_, clock_),
       first_hits_(frame, options.layers) {}

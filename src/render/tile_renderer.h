@@ -59,7 +59,8 @@ class TileRenderer : public TileWorker {
   const FrameView<Real>& frame_;
   const Kernels<Real> kernels_;
   const std::atomic<bool>& stop_;
-  const std::uint64_t surface_fields_;  // that the frame's materials read
+  const std::uint64_t surface_fields_, texel_fields_,
+      path_fields_;  // that the frame's materials read
   HitBinner binner_;
   LightShader<Real> lights_;
 
@@ -76,6 +77,7 @@ class TileRenderer : public TileWorker {
 
   HitStream<Real> hits_;
   SurfaceStream<Real> surfaces_;
+  TexelStream<Real> texels_;  // of the bin in work
   ColourStream<Real> ray_colours_, surface_colours_;
 };
 

@@ -3,34 +3,36 @@
 #include <algorithm>
 
 #include "simd/shading.h"
-#include "simd/streams.h"
-#include "src/scalar/sample_texture.h"
 
 namespace sheaf {
 
 template <typename Real>
-void TintSurfaces(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
-                  const HitBin& bin, const SurfaceView<Real>& surfaces,
+void TintSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels, const HitBin& bin,
+                  const SurfaceView<Real>& surfaces, const TexelOutput<Real>& texels,
                   const SurfaceOutput<Real>& tinted) {
   const std::uint32_t count = bin.batch.count;
+  const MaterialData<Real>& material = frame.materials[bin.material];
   if (bin.kind != PrimitiveKind::kTriangle) {
     for (Real* channel : {tinted.tint_r, tinted.tint_g, tinted.tint_b}) {
       std::fill_n(channel, count, Real(1));
     }
   }
   if (material.kind != BaseColour::kTexture) return;
-  const TextureData<Real>& texture = textures[material.texture];
+  kernels.sample_texture(frame.textures[material.texture], surfaces, count,
+                         {texels.r, texels.g, texels.b, nullptr});
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto colour = scalar::SampleTexture(texture, surfaces.u[i], surfaces.v[i]);
-    tinted.tint_r[i] *= colour.x;
-    tinted.tint_g[i] *= colour.y;
-    tinted.tint_b[i] *= colour.z;
+    tinted.tint_r[i] *= texels.r[i];
+    tinted.tint_g[i] *= texels.g[i];
+    tinted.tint_b[i] *= texels.b[i];
   }
 }
 
-template void TintSurfaces(const MaterialData<float>&, std::span<const TextureData<float>>,
-                           const HitBin&, const SurfaceView<float>&, const SurfaceOutput<float>&);
-template void TintSurfaces(const MaterialData<double>&, std::span<const TextureData<double>>,
-                           const HitBin&, const SurfaceView<double>&, const SurfaceOutput<double>&);
+#define SHEAF_INSTANTIATE(Real)                                                           \
+  template void TintSurfaces(const FrameView<Real>&, const Kernels<Real>&, const HitBin&, \
+                             const SurfaceView<Real>&, const TexelOutput<Real>&,          \
+                             const SurfaceOutput<Real>&);
+SHEAF_INSTANTIATE(float)
+SHEAF_INSTANTIATE(double)
+#undef SHEAF_INSTANTIATE
 
 }  // namespace sheaf

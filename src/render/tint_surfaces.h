@@ -2,9 +2,7 @@
 #ifndef SHEAF_RENDER_TINT_SURFACES_H_
 #define SHEAF_RENDER_TINT_SURFACES_H_
 
-#include <span>
-
-#include "simd/shading.h"
+#include "simd/kernels.h"
 #include "simd/streams.h"
 #include "src/render/bin_hits.h"
 #include "src/stream/frame_view.h"
@@ -12,11 +10,11 @@
 namespace sheaf {
 
 // Finishes the tints of surfaces[0, bin.batch.count): of spheres they are written, of triangles
-// they hold the vertices' colours. Bits: as sheaf::scalar::TintAt. One surface at a time: look-ups
-// of texels have no order that a vector could use.
+// they hold the vertices' colours. Bits: as sheaf::scalar::TintAt. Leaves the texture's colours in
+// r, g and b of `texels`.
 template <typename Real>
-void TintSurfaces(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
-                  const HitBin& bin, const SurfaceView<Real>& surfaces,
+void TintSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels, const HitBin& bin,
+                  const SurfaceView<Real>& surfaces, const TexelOutput<Real>& texels,
                   const SurfaceOutput<Real>& tinted);
 
 }  // namespace sheaf

@@ -14,17 +14,43 @@
 
 namespace sheaf::scalar {
 
-// How much of the surface is there, in [0, 1].
+// What a material's textures say at one point. Of textures that it lacks, anything.
 template <typename Real>
-Real AlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
-             const Surface<Real>& surface) {
+struct Texels {
+  Real metallic, roughness;  // before their factors
+  Real occlusion;
+  Vec3<Real> emission;
+  Real alpha;
+};
+
+// The alpha of the base colour's texture, or 1.
+template <typename Real>
+Real TexelAlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+                  const Surface<Real>& surface) {
+  if (material.kind != BaseColour::kTexture) return 1;
+  return SampleAlpha(textures[material.texture], surface);
+}
+
+template <typename Real>
+Texels<Real> TexelsAt(const MaterialData<Real>& material,
+                      std::span<const TextureData<Real>> textures, const Surface<Real>& surface) {
   const FinishData<Real>& finish = material.finish;
-  Real alpha = finish.alpha_factor;
-  if (material.kind == BaseColour::kTexture) {
-    alpha = alpha * SampleAlpha(textures[material.texture], surface.u, surface.v);
-  }
-  if (finish.alpha == AlphaUse::kMask) return alpha >= finish.alpha_cutoff ? Real(1) : Real(0);
-  return alpha;
+  const auto sample = [&](std::uint32_t texture) -> Vec3<Real> {
+    if (texture == kNoTexture) return {1, 1, 1};
+    return SampleTexture(textures[texture], surface);
+  };
+  const Vec3<Real> gloss = sample(finish.metallic_roughness);
+  const Real alpha =
+      finish.alpha == AlphaUse::kOpaque ? 1 : TexelAlphaAt(material, textures, surface);
+  return {gloss.z, gloss.y, sample(finish.occlusion).x, sample(finish.emission), alpha};
+}
+
+// How much of the surface is there, in [0, 1], where its texture's alpha is `alpha`.
+template <typename Real>
+Real ShareThere(const FinishData<Real>& finish, Real alpha) {
+  const Real scaled = finish.alpha_factor * alpha;
+  if (finish.alpha == AlphaUse::kMask) return scaled >= finish.alpha_cutoff ? Real(1) : Real(0);
+  return scaled;
 }
 
 // What the surface lets pass of a light behind it, straight on: all of it where nothing is there.
@@ -34,12 +60,11 @@ Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureD
   const FinishData<Real>& finish = material.finish;
   Vec3<Real> passes = FromArray(material.passes);
   if (finish.metallic_roughness != kNoTexture) {  // metal lets nothing pass
-    const Vec3<Real> gloss =
-        SampleTexture(textures[finish.metallic_roughness], surface.u, surface.v);
+    const Vec3<Real> gloss = SampleTexture(textures[finish.metallic_roughness], surface);
     passes = passes * (1 - finish.metallic * gloss.z);
   }
   if (finish.alpha == AlphaUse::kOpaque) return passes;
-  const Real alpha = AlphaAt(material, textures, surface);
+  const Real alpha = ShareThere(finish, TexelAlphaAt(material, textures, surface));
   const Real gap = 1 - alpha;
   return passes * alpha + Vec3<Real>{gap, gap, gap};
 }
@@ -63,28 +88,22 @@ void ApplyGloss(Real metallic, Real roughness, Vec3<Real> base, MaterialData<Rea
 // The material as it is at one point, where its base colour is `base`. Only the terms that
 // SurfaceFields has differ.
 template <typename Real>
-MaterialData<Real> MaterialAt(const MaterialData<Real>& material,
-                              std::span<const TextureData<Real>> textures,
-                              const Surface<Real>& surface, Vec3<Real> base) {
+MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<Real>& texels,
+                              Vec3<Real> base) {
   const FinishData<Real>& finish = material.finish;
-  const auto sample = [&](std::uint32_t texture) {
-    return SampleTexture(textures[texture], surface.u, surface.v);
-  };
   MaterialData<Real> point = material;
   if (finish.metallic_roughness != kNoTexture) {
-    const Vec3<Real> gloss = sample(finish.metallic_roughness);
-    ApplyGloss(finish.metallic * gloss.z, finish.roughness * gloss.y, base, point);
+    ApplyGloss(finish.metallic * texels.metallic, finish.roughness * texels.roughness, base, point);
   }
   if (finish.occlusion != kNoTexture) {
-    const Real share = 1 + finish.occlusion_strength * (sample(finish.occlusion).x - 1);
+    const Real share = 1 + finish.occlusion_strength * (texels.occlusion - 1);
     for (Real& channel : point.ambient) channel = channel * share;
   }
   if (finish.emission != kNoTexture) {
-    const Vec3<Real> emission = sample(finish.emission);
-    for (int i = 0; i < 3; ++i) point.emission[i] = point.emission[i] * emission[i];
+    for (int i = 0; i < 3; ++i) point.emission[i] = point.emission[i] * texels.emission[i];
   }
   if (finish.alpha != AlphaUse::kOpaque) {
-    const Real alpha = AlphaAt(material, textures, surface);
+    const Real alpha = ShareThere(finish, texels.alpha);
     point.kd = point.kd * alpha;
     point.ks = point.ks * alpha;
     for (int i = 0; i < 3; ++i) {
@@ -98,12 +117,12 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material,
   return point;
 }
 
-// The shading normal that a normal map makes of the surface's, on triangle `i`. Its tangents are
-// those of the triangle's surface coordinates, at right angles to the shading normal; a triangle
-// without coordinates, or whose normal would turn to the face's other side, keeps its normal.
+// The shading normal that a normal map, whose colour here is `colour`, makes of the surface's, on
+// triangle `i`. Its tangents are those of the triangle's surface coordinates, at right angles to
+// the shading normal; a triangle without coordinates, or whose normal would turn to the face's
+// other side, keeps its normal.
 template <typename Real>
-Vec3<Real> BumpedNormal(const MaterialData<Real>& material,
-                        std::span<const TextureData<Real>> textures,
+Vec3<Real> BumpedNormal(const MaterialData<Real>& material, Vec3<Real> colour,
                         const TriangleArrays<Real>& triangles, std::uint32_t i,
                         const Surface<Real>& surface) {
   using W = Wide<Real>;
@@ -123,8 +142,7 @@ Vec3<Real> BumpedNormal(const MaterialData<Real>& material,
   const Vec3<W> x = NormalizeWide(level);
   // Against v, which runs down the image: to the left of x where the image is seen as it is.
   const Vec3<W> y = det < 0 ? Cross(n, x) : Cross(x, n);
-  const Vec3<W> texel =
-      SampleTexture(textures[material.finish.normals], surface.u, surface.v).template To<W>();
+  const Vec3<W> texel = colour.template To<W>();
   const W scale = static_cast<W>(material.finish.normal_scale);
   const Vec3<W> bump =
       (x * ((2 * texel.x - 1) * scale) + y * ((2 * texel.y - 1) * scale)) + n * (2 * texel.z - 1);

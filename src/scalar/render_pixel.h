@@ -18,6 +18,7 @@
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/environment.h"
 #include "src/scalar/finish.h"
+#include "src/scalar/footprint.h"
 #include "src/scalar/pass_light.h"
 #include "src/scalar/shadow_ray.h"
 #include "src/scalar/spawn.h"
@@ -55,15 +56,20 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& ma
   return colour;
 }
 
-// SurfaceOf, with the normal that shading goes by.
+// SurfaceOf, with the ray's footprint and the normal that shading goes by.
 template <typename Real>
 Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Real>& material,
-                            const Ray<Real>& ray, const Hit<Real>& hit) {
-  Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
+                            const Path<Real>& path, const Hit<Real>& hit) {
+  Surface<Real> surface = SurfaceOf(frame, material, path.ray, hit);
   const PrimitiveInfo& primitive = frame.primitives[hit.primitive];
+  if (material.needs & kNeedsWidth) {
+    MeasureFootprint(frame.geometry, primitive.place, path.width, frame.cone.spread, hit.t,
+                     surface);
+  }
   if (material.finish.normals != kNoTexture && primitive.kind() == PrimitiveKind::kTriangle) {
-    surface.normal = BumpedNormal(material, frame.textures, frame.geometry.triangles,
-                                  primitive.index(), surface);
+    surface.normal =
+        BumpedNormal(material, SampleTexture(frame.textures[material.finish.normals], surface),
+                     frame.geometry.triangles, primitive.index(), surface);
   }
   return surface;
 }
@@ -82,7 +88,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
                         PixelScratch<Real>& scratch, RayCounts& tally,
                         const std::atomic<bool>& stop, FirstHit<Real>* first = nullptr) {
   Vec3<Real> sum = {0, 0, 0};
-  scratch.paths.assign(1, {primary, {1, 1, 1}});
+  scratch.paths.assign(1, {primary, {1, 1, 1}, frame.cone.width});
   ++tally.primary;
   for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
     scratch.reflected.clear();
@@ -99,11 +105,11 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       }
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];
-      const Surface<Real> surface = ShadedSurface(frame, material, path.ray, hit);
+      const Surface<Real> surface = ShadedSurface(frame, material, path, hit);
       const Vec3<Real> base = BaseColourAt(material, frame.textures, surface);
       std::optional<MaterialData<Real>> varied;
       if (material.needs & kNeedsTerms) {
-        varied = MaterialAt(material, frame.textures, surface, base);
+        varied = MaterialAt(material, TexelsAt(material, frame.textures, surface), base);
       }
       const MaterialData<Real>& here = varied ? *varied : material;
       if (depth == 0 && first) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "simd/shading.h"
+#include "src/scalar/filter_checker.h"
 #include "src/scalar/pow.h"
 #include "src/scalar/sample_texture.h"
 #include "src/scalar/surface.h"
@@ -28,9 +29,14 @@ bool ReactsToLight(const MaterialData<Real>& material) {
 // A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.
 template <typename Real>
 Vec3<Real> PatternAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  const Real u = surface.u * material.cells[0], v = surface.v * material.cells[1];
+  if (material.kind == BaseColour::kFilteredChecker) {
+    const Real share = EvenShare(u, v, surface.footprint_u * material.cells[0],
+                                 surface.footprint_v * material.cells[1]);
+    return FromArray(material.even) * share + FromArray(material.odd) * (1 - share);
+  }
   if (material.kind != BaseColour::kChecker) return FromArray(material.even);
-  const Real cell =
-      std::floor(surface.u * material.cells[0]) + std::floor(surface.v * material.cells[1]);
+  const Real cell = std::floor(u) + std::floor(v);
   const bool odd = cell != 2 * std::floor(cell / 2);
   return FromArray(odd ? material.odd : material.even);
 }
@@ -45,8 +51,7 @@ template <typename Real>
 Vec3<Real> TintAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
                   const Surface<Real>& surface) {
   if (material.kind != BaseColour::kTexture) return surface.tint;
-  return MultiplyColours(surface.tint,
-                         SampleTexture(textures[material.texture], surface.u, surface.v));
+  return MultiplyColours(surface.tint, SampleTexture(textures[material.texture], surface));
 }
 
 template <typename Real>

@@ -47,6 +47,7 @@ template <typename Real>
 struct Path {
   Ray<Real> ray;
   Real throughput[3];
+  Real width = 0;  // of the ray's cone where it starts
 
   // Whether it is traced: not where all it could add is weighed by `min_throughput` or less (Hall
   // and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds
@@ -92,6 +93,7 @@ Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& sur
       surface.position - away,
       Normalize(KeepOnSide(surface, d * eta + n * (eta * cos_i - split.cos_t), Real(-1))),
       surface.source ^ kInsideBit};
+  spawned.reflected.width = spawned.refracted.width = surface.width;
   for (int i = 0; i < 3; ++i) {
     const Real reflect = material.reflect[i] + material.transmit[i] * split.reflectance;
     const Real transmit = split.is_total ? Real(0) : material.transmit[i] * (1 - split.reflectance);

@@ -27,6 +27,8 @@ struct Surface {
   Vec3<Real> tint = {1, 1, 1};  // of the vertices' colours
   Real offset;
   std::uint32_t source;
+  Real width = 0;                         // of the ray's cone there
+  Real footprint_u = 0, footprint_v = 0;  // how much of u and v the cone covers
 
   bool inside() const { return (source & kInsideBit) != 0; }
   std::uint32_t primitive() const { return source & ~kInsideBit; }

@@ -31,13 +31,21 @@ struct Checker {
   Colour even{1.0};
   Colour odd{0.0};
   glm::dvec2 cells{1.0};  // cells across the unit interval of u and of v, > 0
+  // Whether a ray sees the mean of the cells that its pixel covers. Otherwise it sees the one that
+  // it meets, and cells smaller than a pixel are noise.
+  bool is_filtered = false;
 };
 
 enum class Transfer { kLinear, kSrgb };
 
 // How a texture goes on beyond the unit interval of a surface coordinate.
 enum class Wrap { kRepeat, kMirror, kClamp };
-enum class Filter { kNearest, kLinear };
+
+// What a texture shows between the middles of its texels. kNearest: the nearest texel. kLinear: the
+// four around, mixed. kMip: the same, and where a pixel covers more than a texel, from copies of
+// the image of half the size, a quarter, and so on, so that what is far away is its mean and no
+// noise.
+enum class Filter { kNearest, kLinear, kMip };
 inline constexpr int kMaxTextureSide = 16384;
 
 // A picture to take colours from. Rows from the top; a texel's lowest byte is red, then green and
@@ -64,7 +72,7 @@ struct Texture {
   std::shared_ptr<const Image> image;   // not null
   Transfer transfer = Transfer::kSrgb;  // of the image
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
-  Filter filter = Filter::kLinear;
+  Filter filter = Filter::kMip;
   Colour factor{1.0};
   TextureTransform transform = {};
 };

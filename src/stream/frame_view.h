@@ -52,6 +52,7 @@ struct FrameView {
   bool passes_light;    // whether any material lets light pass
   bool attenuates;      // whether any takes light inside
   Real length_unit;     // the user's lengths in one of the geometry's; a power of two
+  PixelCone<Real> cone = {};  // of primary rays
 
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
 };
