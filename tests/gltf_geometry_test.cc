@@ -10,19 +10,6 @@
 namespace sheaf {
 namespace {
 
-// Appends floats to the buffer, as an accessor of this shape; its index.
-int AddFloats(json& gltf, const std::vector<float>& numbers, const std::string& shape, int count) {
-  std::string bytes;
-  for (const float x : numbers) Put(bytes, x, false);
-  const std::size_t buffer = gltf["buffers"].size(), view = gltf["bufferViews"].size();
-  gltf["buffers"].push_back(
-      {{"byteLength", bytes.size()}, {"uri", "data:;base64," + Base64(bytes)}});
-  gltf["bufferViews"].push_back({{"buffer", buffer}, {"byteLength", bytes.size()}});
-  gltf["accessors"].push_back(
-      {{"bufferView", view}, {"componentType", 5126}, {"count", count}, {"type", shape}});
-  return static_cast<int>(gltf["accessors"].size()) - 1;
-}
-
 // Of the square alone.
 json OneSquare() {
   json gltf = SquareGltf();

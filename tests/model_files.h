@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "folder.h"
 #include "random_scene.h"
@@ -188,6 +189,20 @@ inline json SquareGltf() {
   gltf["scenes"] = {{{"nodes", {0, 5, 6, 7, 8, 9}}}};
   gltf["scene"] = 0;
   return gltf;
+}
+
+// Appends floats to the buffer, as an accessor of this shape; its index.
+inline int AddFloats(json& gltf, const std::vector<float>& numbers, const std::string& shape,
+                     int count) {
+  std::string bytes;
+  for (const float x : numbers) Put(bytes, x, false);
+  const std::size_t buffer = gltf["buffers"].size(), view = gltf["bufferViews"].size();
+  gltf["buffers"].push_back(
+      {{"byteLength", bytes.size()}, {"uri", "data:;base64," + Base64(bytes)}});
+  gltf["bufferViews"].push_back({{"buffer", buffer}, {"byteLength", bytes.size()}});
+  gltf["accessors"].push_back(
+      {{"bufferView", view}, {"componentType", 5126}, {"count", count}, {"type", shape}});
+  return static_cast<int>(gltf["accessors"].size()) - 1;
 }
 
 }  // namespace sheaf

@@ -179,8 +179,10 @@ json CompleteScene() {
       {"directional": {"direction": [0, -1, 1]}, "E0": 1},
       {"directional": {"direction": [1, -1, 1]}, "intensity": 1}],
     "cameras": [
-      {"name": "p", "eye": [0, 0, 9], "look_at": [0, 0, 0], "up": [0, 1, 0.5], "fov_y": 40},
-      {"name": "o", "eye": [0, 0, 9], "look_at": [0, 0, 0], "orthographic": {"height": 3}},
+      {"name": "p", "eye": [0, 0, 9], "look_at": [0, 0, 0], "up": [0, 1, 0.5], "fov_y": 40,
+       "path": [{"frame": 0}, {"frame": 9.5, "eye": [1, 0, 9], "look_at": [0, 1, 0], "fov_y": 20}]},
+      {"name": "o", "eye": [0, 0, 9], "look_at": [0, 0, 0], "orthographic": {"height": 3},
+       "path": [{"frame": 0, "height": 4}]},
       {"name": "n", "eye": [0, 0, 9], "look_at": [0, 0, 0],
        "projection": {"perspective": {"fov_y": 40}}},
       {"name": "h", "eye": [0, 0, 9], "look_at": [0, 0, 0],
@@ -188,7 +190,7 @@ json CompleteScene() {
       {"name": "e", "eye": [0, 0, 9], "look_at": [0, 0, 0],
        "projection": {"equirectangular": {}}},
       {"name": "f", "eye": [0, 0, 9], "look_at": [0, 0, 0],
-       "projection": {"fisheye": {"fov": 200}}}],
+       "projection": {"fisheye": {"fov": 200}}, "path": [{"frame": 3, "fov": 100}]}],
     "views": {"all": ["p", "o"], "one": ["o"]}})");
 }
 
@@ -200,6 +202,8 @@ bool IsBeyondSchema(const std::string& message) {
                            "gives no direction",
                            "looks at its own eye",
                            "parallel to up",
+                           "does not come after",
+                           "is not of the camera's projection",
                            "the quad has no area",
                            "not in one plane",
                            "do not form a convex quad",

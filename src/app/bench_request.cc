@@ -7,6 +7,7 @@ namespace sheaf {
 void AddBenchOptions(CLI::App& app, BenchRequest& request) {
   AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
   AddName(app, "--camera", request.camera, "NAME", "The camera; the scene's first if absent");
   AddSize(app, request.size);
   AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");

@@ -83,6 +83,7 @@ void WarnOfThinWalls(const Scene& scene, Json& json) {
 void AddCheckOptions(CLI::App& app, CheckRequest& request) {
   AddInputs(app, "SCENE", request.scenes, Presence::kNeeded, "Scenes or models");
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
   AddFlag(app, "--json", request.json, "The same as JSON");
 }
 

@@ -1,6 +1,7 @@
 #include "src/app/choose.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -75,14 +76,23 @@ Error UnusableTarget(std::string_view option, const std::string& target,
 
 Error Usage(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
 
-bool IsSameFile(const std::string& a, const std::string& b) {
+std::set<std::string> FileKeys(const std::string& path) {
   namespace fs = std::filesystem;
-  std::error_code ignored;
-  const auto full = [&](const std::string& path) {
-    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-  };
-  const fs::path place = full(a);
-  return fs::equivalent(a, b, ignored) || (!place.empty() && place == full(b));
+  std::error_code error;
+  std::set<std::string> keys;
+  struct stat status;
+  if (stat(path.c_str(), &status) == 0) {
+    keys.insert(fmt::format("{}:{}", status.st_dev, status.st_ino));
+  }
+  const fs::path full = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (!full.empty()) keys.insert(full.string());
+  return keys;
+}
+
+bool IsSameFile(const std::string& a, const std::string& b) {
+  const std::set<std::string> keys = FileKeys(a), others = FileKeys(b);
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const std::string& key) { return others.contains(key); });
 }
 
 std::optional<std::vector<std::string>> ParseNames(const std::string& text) {
@@ -185,24 +195,6 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
 
 std::string FormatPath(const std::string& path, const std::string& format) {
   return format.empty() ? path : "." + format;
-}
-
-Result<std::string> ExpandPath(const std::string& output, const std::string& camera) {
-  std::string path = output;
-  std::size_t at = path.find(kCameraField);
-  if (at == std::string::npos) return path;
-  const bool plain = std::none_of(camera.begin(), camera.end(), [](char c) {
-    return c == '/' || (static_cast<unsigned char>(c) < 0x20);
-  });
-  if (!plain || camera.empty()) {
-    return Usage(
-        fmt::format("-o {}: the camera \"{}\" has no name for a file", output, Printable(camera)));
-  }
-  while (at != std::string::npos) {
-    path.replace(at, kCameraField.size(), camera);
-    at = path.find(kCameraField, at + camera.size());
-  }
-  return path;
 }
 
 }  // namespace sheaf

@@ -3,6 +3,7 @@
 #define SHEAF_APP_CHOOSE_H_
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,9 @@
 namespace sheaf {
 
 Error Usage(std::string message);  // of kind kUsage
+
+// What tells a file from others: its place with all links followed, and its inode where it exists.
+std::set<std::string> FileKeys(const std::string& path);
 
 // Whether two paths name one file, there already or not.
 bool IsSameFile(const std::string& a, const std::string& b);
@@ -55,15 +59,6 @@ Result<std::vector<const Camera*>> ChooseCameras(const CameraChoice& choice,
 
 // What tells the format of an output: its path, or what --format says in its stead.
 std::string FormatPath(const std::string& path, const std::string& format);
-
-// The path that `-o -` stands for.
-inline constexpr std::string_view kStandardOutputPath = "/dev/stdout";
-
-// Where this stands in an output's path, the camera's name goes.
-inline constexpr std::string_view kCameraField = "{camera}";
-
-// Puts the camera's name there, unless it would lead into another folder.
-Result<std::string> ExpandPath(const std::string& output, const std::string& camera);
 
 }  // namespace sheaf
 

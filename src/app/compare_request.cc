@@ -29,6 +29,7 @@ void AddCompareOptions(CLI::App& app, CompareRequest& request) {
             "A scene; or pictures, the first the reference");
   AddCameraChoice(app, request.choice);
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
   AddSize(app, request.size);
   AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
   AddTargets(app, request.targets,

@@ -219,6 +219,7 @@ void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
             "How a .png encodes light; keep: as the input does, or linear");
   AddLookOptions(app, request.look);
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
 }
 
 Status RunConvert(const ConvertRequest& request) {

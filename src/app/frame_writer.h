@@ -2,6 +2,7 @@
 #ifndef SHEAF_APP_FRAME_WRITER_H_
 #define SHEAF_APP_FRAME_WRITER_H_
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,8 @@ namespace sheaf {
 // One picture to make.
 struct Frame {
   const Camera* camera;
+  std::size_t camera_index;   // of the scene
+  std::optional<int> number;  // in a sequence
   std::string path;
   std::string format;  // what the path has to end in, without the dot; empty: it does
   std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own

@@ -204,6 +204,7 @@ std::string SceneText(const Json& scene) {
 void AddInfoOptions(CLI::App& app, InfoRequest& request) {
   AddInput(app, "SCENE", request.scene, Presence::kOptional, "A scene file to describe");
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
   AddFlag(app, "--json", request.json, "The same as JSON");
 }
 

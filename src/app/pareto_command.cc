@@ -8,6 +8,7 @@
 #include "src/app/interrupt.h"
 #include "src/app/measure_pareto.h"
 #include "src/app/measure_places.h"
+#include "src/app/output_path.h"
 #include "src/app/pareto_report.h"
 #include "src/app/pareto_request.h"
 #include "src/app/standard_output.h"

@@ -157,6 +157,17 @@ void FrameWatch::Finish(const RenderStats& stats) {
                          stats.target, stats.threads, stats.threads == 1 ? "thread" : "threads"));
 }
 
+SequencePace::SequencePace(std::uint64_t pictures) : pictures_(pictures), start_(Clock::now()) {}
+
+std::string SequencePace::Text() const {
+  if (pictures_ == 1) return "";
+  const std::string place = fmt::format("{}/{}", done_ + 1, pictures_);
+  if (done_ == 0) return place;
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  const double left = seconds / static_cast<double>(done_) * static_cast<double>(pictures_ - done_);
+  return fmt::format("{}, {} left", place, Duration(left));
+}
+
 StepWatch::StepWatch(ProgressStyle style, std::string label, std::uint64_t steps)
     : style_(style), label_(std::move(label)), steps_(steps), start_(Clock::now()) {}
 

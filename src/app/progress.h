@@ -98,6 +98,23 @@ class StepWatch {
   double last_line_seconds_ = 0.0;
 };
 
+// How a sequence of pictures comes along.
+class SequencePace {
+ public:
+  explicit SequencePace(std::uint64_t pictures);
+
+  // A picture is done.
+  void Advance() { ++done_; }
+
+  // Of the picture in work: "3/24, 1:20 left"; of the first "1/24", of an only one nothing.
+  std::string Text() const;
+
+ private:
+  const std::uint64_t pictures_;
+  const std::chrono::steady_clock::time_point start_;
+  std::uint64_t done_ = 0;
+};
+
 }  // namespace sheaf
 
 #endif  // SHEAF_APP_PROGRESS_H_

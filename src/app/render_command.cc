@@ -1,7 +1,6 @@
 #include "src/app/render_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -12,7 +11,8 @@
 #include "src/app/frame_writer.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
-#include "src/app/layer_picture.h"
+#include "src/app/output_path.h"
+#include "src/app/plan_frames.h"
 #include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/app/render_request.h"
@@ -25,90 +25,6 @@
 
 namespace sheaf {
 namespace {
-
-// Whether the picture's format is known and can hold what is asked for.
-Status CheckFormat(const RenderRequest& request) {
-  const std::string named = FormatPath(request.output, request.format);
-  const bool is_stdout = request.output == kStandardOutputPath;
-  if (const Status known = CheckPicturePath(named); !known) {
-    if (!is_stdout) return known;
-    return Usage(fmt::format("-o {}: needs --format, because its name does not tell the format",
-                             request.output));
-  }
-  if (is_stdout && request.statistics == "-") {
-    return Usage("-o, --json: both to standard output; --json=FILE writes a file");
-  }
-  if (is_stdout && isatty(STDOUT_FILENO) != 0) {
-    return Usage(fmt::format("-o {}: a terminal shows no pictures", request.output));
-  }
-  if (!request.layers.empty() && !request.format.empty() && !HoldsLayers(named)) {
-    return Usage(
-        fmt::format("--aov, --format {}: has no layers in it, and no path for files beside it",
-                    request.format));
-  }
-  if (const Status shown = CheckLook(request.look, named); !shown) return shown;
-  return request.bits ? CheckPictureBits(named, *request.bits) : Status(Done{});
-}
-
-// Finds what is wrong before the scene is read: first the command line, then where to write.
-Status CheckCommandLine(const RenderRequest& request) {
-  if (request.choice.cameras.size() > 1 && request.output.find(kCameraField) == std::string::npos) {
-    return Usage(
-        fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));
-  }
-  if (const Status sound = CheckFormat(request); !sound) return sound;
-  if (request.crop && request.part) {
-    return Usage("--tile, --crop: a part of the picture is one or the other");
-  }
-  if (const auto chosen = ChooseTarget(request.target); !chosen) return chosen.error();
-
-  // Where {camera} is part of the folder's name, PlanFrames checks each folder.
-  const std::string folder = request.output.substr(0, request.output.rfind('/') + 1);
-  if (folder.find(kCameraField) == std::string::npos) {
-    if (const Status writable = CheckWritable(request.output); !writable) return writable;
-  }
-  if (!request.statistics.empty() && request.statistics != "-") {
-    return CheckWritable(request.statistics);
-  }
-  return Done{};
-}
-
-std::vector<Output> OutputsOf(const RenderRequest& request, const std::vector<Frame>& frames) {
-  std::vector<Output> outputs = {{"--json", request.statistics}};
-  for (const Frame& frame : frames) {
-    outputs.push_back({"-o", frame.path});
-    for (const auto& [layer, path] : frame.beside) outputs.push_back({"--aov", path});
-  }
-  return outputs;
-}
-
-Result<std::vector<Frame>> PlanFrames(const RenderRequest& request, const Scene& scene) {
-  const Result<std::vector<const Camera*>> cameras =
-      ChooseCameras(request.choice, request.options, request.scene, scene);
-  if (!cameras) return cameras.error();
-  if (cameras.value().size() > 1 && request.output.find(kCameraField) == std::string::npos) {
-    return Usage(fmt::format("-o {}: the view \"{}\" has {} cameras, which need {} in the path",
-                             request.output, request.choice.view, cameras.value().size(),
-                             kCameraField));
-  }
-  std::vector<Frame> frames;
-  for (const Camera* camera : cameras.value()) {
-    const Result<std::string> path = ExpandPath(request.output, camera->name);
-    if (!path) return path.error();
-    if (const Status writable = CheckWritable(path.value()); !writable) return writable.error();
-    Frame frame{camera, path.value(), request.format, {}};
-    const bool holds_layers = HoldsLayers(FormatPath(frame.path, frame.format));
-    for (int i = 0; i < kLayerCount && !holds_layers; ++i) {
-      const Layer layer = static_cast<Layer>(i);
-      if (!request.layers.has(layer)) continue;
-      frame.beside.emplace_back(layer, LayerPath(path.value(), layer));
-      const Status writable = CheckWritable(frame.beside.back().second);
-      if (!writable) return writable.error();
-    }
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
 
 Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings& settings) {
   RenderOptions options = FrameOptions(settings, request.size, request.samples);
@@ -163,7 +79,7 @@ Result<FrameRecord> RenderFrame(const RenderRequest& request, const Scene& scene
                                 const RenderOptions& options, ProgressStyle style,
                                 std::string label) {
   const PixelSize size = PictureSize(options);
-  FrameRecord record{frame.camera->name, frame.path, options, {}};
+  FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
   if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
     const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
     if (!look) return look.error();
@@ -208,7 +124,63 @@ Status WriteStatistics(const std::string& destination, const std::string& json) 
   return destination == "-" ? WriteStandardOutput(json) : WriteFileWhole(destination, json);
 }
 
-// Renders every camera. Each picture is written when it is ready, the statistics at the end.
+// "front", or of a sequence "front, frame 12, 3/24, 1:20 left".
+std::string LabelOf(const Frame& frame, const SequencePace& pace) {
+  std::string label = Printable(frame.camera->name);
+  if (frame.number) label += fmt::format(", frame {}", *frame.number);
+  const std::string text = pace.Text();
+  if (!text.empty()) label += (frame.number ? ", " : " ") + text;
+  return label;
+}
+
+// What makes a sequence of more than one frame all one picture; empty where something moves.
+std::string StillSequence(const RenderRequest& request, const OpenedScene& opened,
+                          const std::vector<Frame>& frames) {
+  const std::optional<FrameRange> range = SequenceOf(request);
+  if (!range || range->count() == 1 || request.turntable || opened.duration > 0) return "";
+  const bool moves = std::any_of(frames.begin(), frames.end(), [&](const Frame& frame) {
+    return opened.cameras[frame.camera_index].path.size() > 1;
+  });
+  return moves ? "" : "--frames: nothing moves, so that all frames show the same";
+}
+
+Result<OpenedScene> OpenFirst(const RenderRequest& request, ProgressStyle style) {
+  const ReadingNotice notice(style, request.scene);
+  const std::optional<FrameRange> sequence = SequenceOf(request);
+  const SceneOptions options = sequence ? OptionsAt(request, sequence->first) : request.options;
+  return OpenSceneAndFiles(request.scene, options,
+                           request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
+}
+
+// Renders the frames in turn. Each picture is written when it is ready.
+Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
+                                              const RenderOptions& options, ProgressStyle style,
+                                              std::vector<Frame> frames, OpenedScene* opened) {
+  SequencePace pace(frames.size());
+  std::vector<FrameRecord> records;
+  std::optional<int> posed = frames.front().number;
+  for (Frame& frame : frames) {
+    if (frame.number != posed) {
+      const Status moved = PoseScene(request.scene, OptionsAt(request, *frame.number), opened);
+      if (!moved) return moved.error();
+      posed = frame.number;
+    }
+    frame.camera = &opened->scene.cameras[frame.camera_index];
+    Result<FrameRecord> record =
+        RenderFrame(request, opened->scene, frame, options, style, LabelOf(frame, pace));
+    if (!record) return record.error();
+    std::vector<std::string> paths = {frame.path};
+    for (const auto& [layer, path] : frame.beside) paths.push_back(path);
+    for (const std::string& path : paths) {
+      if (!request.quiet) PrintMessage("wrote " + path);
+    }
+    records.push_back(std::move(record).value());
+    pace.Advance();
+  }
+  return records;
+}
+
+// Renders every camera at every frame; the statistics are written at the end.
 Status RunRender(const RenderRequest& given) {
   RenderRequest request = given;
   if (request.output == "-") request.output = kStandardOutputPath;
@@ -219,41 +191,26 @@ Status RunRender(const RenderRequest& given) {
     request.options.aspect = static_cast<double>(request.size->width) / request.size->height;
   }
   const ProgressStyle style = ChooseProgressStyle(request);
-  const Result<OpenedScene> opened = [&] {
-    const ReadingNotice notice(style, request.scene);
-    return OpenSceneAndFiles(request.scene, request.options,
-                             request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
-  }();
+  Result<OpenedScene> opened = OpenFirst(request, style);
   if (!opened) return opened.error();
-  const Scene& scene = opened.value().scene;
-  for (const std::string& line : SuspectScene(scene)) {
-    if (!request.quiet) {
-      PrintMessage(fmt::format("sheaf: warning: {}: {}", request.scene, line));
-    }
-  }
-  const Result<RenderOptions> options = MergeOptions(request, scene.settings);
+  std::vector<std::string> doubts = SuspectScene(opened.value().scene);
+  for (std::string& doubt : doubts) doubt = fmt::format("{}: {}", request.scene, doubt);
+  const Result<RenderOptions> options = MergeOptions(request, opened.value().scene.settings);
   if (!options) return options.error();
-  const Result<std::vector<Frame>> frames = PlanFrames(request, scene);
+  const Result<std::vector<Frame>> frames =
+      PlanFrames(request, opened.value().scene, opened.value().files);
   if (!frames) return frames.error();
-  const Status apart = CheckOutputs(OutputsOf(request, frames.value()), opened.value().files);
-  if (!apart) return apart;
+  const std::string still = StillSequence(request, opened.value(), frames.value());
+  if (!still.empty()) doubts.push_back(still);
+  for (const std::string& doubt : doubts) {
+    if (!request.quiet) PrintMessage("sheaf: warning: " + doubt);
+  }
 
   CatchInterrupts();
-  const std::size_t count = frames.value().size();
-  std::vector<FrameRecord> records;
-  for (const Frame& frame : frames.value()) {
-    std::string label = Printable(frame.camera->name);
-    if (count > 1) label += fmt::format(" {}/{}", records.size() + 1, count);
-    Result<FrameRecord> record = RenderFrame(request, scene, frame, options.value(), style, label);
-    if (!record) return record.error();
-    std::vector<std::string> paths = {frame.path};
-    for (const auto& [layer, path] : frame.beside) paths.push_back(path);
-    for (const std::string& path : paths) {
-      if (!request.quiet) PrintMessage("wrote " + path);
-    }
-    records.push_back(std::move(record).value());
-  }
-  return WriteStatistics(request.statistics, StatisticsJson(request.scene, records));
+  const auto records =
+      RenderFrames(request, options.value(), style, frames.value(), &opened.value());
+  if (!records) return records.error();
+  return WriteStatistics(request.statistics, StatisticsJson(request.scene, records.value()));
 }
 
 }  // namespace

@@ -19,14 +19,32 @@ std::optional<PicturePart> ParsePart(const std::string& text) {
   return PicturePart{*part, *parts};
 }
 
+// "0..47", or one frame alone.
+std::optional<FrameRange> ParseFrames(const std::string& text) {
+  constexpr int kLast = static_cast<int>(kMaxFrame);
+  const std::size_t dots = text.find("..");
+  const auto first = ParseInteger(text.substr(0, dots), -kLast, kLast);
+  const auto last =
+      dots == std::string::npos ? first : ParseInteger(text.substr(dots + 2), -kLast, kLast);
+  if (!first || !last || *last < *first) return std::nullopt;
+  return FrameRange{*first, *last};
+}
+
 }  // namespace
 
 void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
   AddSceneOptions(app, request.options);
+  AddMomentOptions(app, request.options);
   AddCameraChoice(app, request.choice);
+  AddParsed(app, "--frames", request.frames, "A..B", "a range of frames like 0..47",
+            "Render these frames of an animation", &ParseFrames);
+  AddInteger(app, "--turntable", request.turntable, 1, 1000000,
+             "Turn the cameras about the scene, once in N frames");
   const std::string picture = fmt::format(
-      "The picture, {} (needed); {{camera}} becomes the camera's name", PictureEndings());
+      "The picture, {} (needed); {{camera}} becomes the camera's name, {{frame}} or {{frame:4}} "
+      "the frame's number",
+      PictureEndings());
   AddOutput(app, request.output, "PATH", picture.c_str());
   AddPictureFormat(app, request.format);
   AddSize(app, request.size);

@@ -22,13 +22,21 @@ struct PicturePart {
   int part, parts;
 };
 
+// The frames of an animation, both ends included.
+struct FrameRange {
+  int first, last;
+  int count() const { return last - first + 1; }
+};
+
 // The command line as it was given. What is absent comes from the scene.
 struct RenderRequest {
   SceneOptions options;
   std::string scene;
   CameraChoice choice;
-  std::string output;  // "-": standard output
-  std::string format;  // of --format; empty: by the path's ending
+  std::optional<FrameRange> frames;
+  std::optional<int> turntable;  // frames of a whole turn
+  std::string output;            // "-": standard output
+  std::string format;            // of --format; empty: by the path's ending
   std::optional<PixelSize> size;
   std::optional<int> samples, max_depth;
   std::optional<double> contrast, min_throughput;

@@ -66,6 +66,7 @@ Json FrameJson(const FrameRecord& frame) {
       {"seconds", SecondsJson(frame)},
       {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
   };
+  if (frame.frame) json["frame"] = *frame.frame;
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;

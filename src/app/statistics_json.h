@@ -2,6 +2,7 @@
 #ifndef SHEAF_APP_STATISTICS_JSON_H_
 #define SHEAF_APP_STATISTICS_JSON_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace sheaf {
 // One rendered and written picture.
 struct FrameRecord {
   std::string camera;
-  std::string picture;  // its path
+  std::optional<int> frame;  // of a sequence
+  std::string picture;       // its path
   RenderOptions options;
   RenderStats stats;
 };

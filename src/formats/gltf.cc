@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "src/formats/gltf_animations.h"
 #include "src/formats/gltf_document.h"
 #include "src/formats/gltf_materials.h"
 #include "src/formats/gltf_meshes.h"
@@ -18,7 +19,11 @@ Result<Scene> ParseGltf(std::string_view bytes, const std::string& name, SceneFi
   GltfMeshes meshes(document, materials, scene);
   GltfNodes nodes(document, meshes, scene);
   try {
-    if (!document.Parse(bytes) || !materials.Read() || !nodes.Read()) return document.Failure();
+    if (!document.Parse(bytes) ||
+        !ApplyAnimations(document, {files.options().time, files.options().animation}) ||
+        !materials.Read() || !nodes.Read()) {
+      return document.Failure();
+    }
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // of tinygltf and its JSON library

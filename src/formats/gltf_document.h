@@ -35,7 +35,8 @@ class GltfDocument {
 
   // All of it but `images`, which are below.
   const tinygltf::Model& model() const { return model_; }
-  std::size_t buffer_bytes() const { return buffer_bytes_; }  // of the file and of all buffers
+  std::vector<tinygltf::Node>& nodes() { return model_.nodes; }  // for animations to move
+  std::size_t buffer_bytes() const { return buffer_bytes_; }     // of the file and of all buffers
 
   std::size_t image_count() const { return images_.size(); }
   const GltfImage& image(std::size_t index) const { return images_[index]; }
@@ -45,6 +46,9 @@ class GltfDocument {
   // Keeps the first fault and returns false. `place` is a JSON pointer, or empty.
   bool Fail(std::string place, std::string_view what);
   Error Failure() const;
+
+  // As SceneFiles has it.
+  void AddAnimation(const std::string& name, double seconds) { files_.AddAnimation(name, seconds); }
 
   // What is left out or replaced, as Warnings::Add takes it; `place` is a JSON pointer, or empty.
   void Warn(const std::string& place, std::string_view kind, std::string_view detail = {});

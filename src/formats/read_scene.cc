@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -10,12 +11,16 @@
 #include "src/formats/read_file.h"
 #include "src/formats/scene_json.h"
 #include "src/formats/studio.h"
+#include "src/formats/suggest_name.h"
 
 namespace sheaf {
 namespace {
 
-KeyLight Complete(Scene* scene, double aspect) {
+KeyLight Complete(Scene* scene, const ReadOptions& options) {
+  if (scene->cameras.empty() && options.camera) scene->cameras.push_back(*options.camera);
   if (scene->cameras.empty()) {
+    const double usual = static_cast<double>(scene->settings.width) / scene->settings.height;
+    const double aspect = options.aspect.value_or(usual);
     scene->cameras.push_back(CameraThatFrames(*scene, {0, 1, 0}, aspect));
   }
   if (!scene->lights.empty()) return KeyLight::kAbsent;
@@ -23,6 +28,19 @@ KeyLight Complete(Scene* scene, double aspect) {
   scene->settings.samples = 4;
   scene->settings.contrast = 0.1;
   return KeyLight::kAdded;
+}
+
+// Whether some model of the scene has the animation that is asked for.
+Status CheckAnimation(const std::string& path, const SceneFiles& files) {
+  const std::string& name = files.options().animation;
+  const std::vector<std::string>& known = files.animations();
+  if (name.empty() || std::find(known.begin(), known.end(), name) != known.end()) return Done{};
+  return SceneError(
+      path, fmt::format("no animation \"{}\"{} ({})", Printable(name),
+                        DidYouMean(name, {known.begin(), known.end()}),
+                        known.empty()
+                            ? "it has none"
+                            : "it has: " + Printable(fmt::format("{}", fmt::join(known, ", ")))));
 }
 
 // Whether it begins with a brace or a comment. Files without an ending may be scenes all the same.
@@ -70,15 +88,14 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
     files.Enter(path);
     Result<Scene> scene = ReadSceneFile(path, files);
     if (!scene) return scene.error();
+    if (const Status known = CheckAnimation(path, files); !known) return known.error();
     KeyLight key_light = KeyLight::kAbsent;
     if (IsModelPath(path)) {
-      const Settings& settings = scene.value().settings;
-      const double usual = static_cast<double>(settings.width) / settings.height;
-      key_light = Complete(&scene.value(), options.aspect.value_or(usual));
+      key_light = Complete(&scene.value(), options);
       scene.value().settings.transfer = FindFormat(path)->model_transfer;
     }
     return ReadSceneResult{std::move(scene).value(), key_light, files.warnings().Lines(),
-                           files.paths()};
+                           files.paths(), files.duration()};
   } catch (const std::bad_alloc&) {
     return InputError(path, "not enough memory to read the file");
   }

@@ -76,6 +76,48 @@ void WriteProjection(const Projection& projection, Json* json) {
   }
 }
 
+constexpr NumberRange kFrame{-kMaxFrame, kMaxFrame, "a number in [-1e6, 1e6]"};
+
+// What a key leaves out is the camera's own.
+CameraKey ReadKey(const JsonCursor& value, const Camera& camera) {
+  CameraKey key{0, camera.eye, camera.look_at, ParameterOf(camera.projection)};
+  JsonObject object(value);
+  object.Required("frame").Read(kFrame, &key.frame);
+  ReadVector(object.Optional("eye"), &key.eye);
+  ReadVector(object.Optional("look_at"), &key.look_at);
+  for (const ProjectionKind& kind : kProjectionKinds) {
+    if (kind.unit == ProjectionUnit::kNone) continue;
+    const JsonCursor lens = object.Optional(kind.parameter);
+    if (!lens.Read({kSmallestPositive, kind.largest, kind.range}, &key.lens)) continue;
+    if (&kind == &KindOf(camera.projection)) continue;
+    lens.Fail(fmt::format("is not of the camera's projection, {}", KindOf(camera.projection).name));
+  }
+  object.Finish();
+  return key;
+}
+
+void ReadPath(const JsonCursor& value, Camera* camera) {
+  if (value.Is(JsonKind::kArray) && value.IsEmpty()) value.Fail("a path needs at least one key");
+  value.ForEachElement([&](const JsonCursor& element) {
+    const CameraKey key = ReadKey(element, *camera);
+    if (!camera->path.empty() && !(camera->path.back().frame < key.frame)) {
+      element.Fail("its frame does not come after that of the key before");
+    }
+    camera->path.push_back(key);
+  });
+}
+
+Json PathJson(const Camera& camera) {
+  const ProjectionKind& kind = KindOf(camera.projection);
+  Json path = Json::array();
+  for (const CameraKey& key : camera.path) {
+    path.push_back(
+        {{"frame", key.frame}, {"eye", VectorJson(key.eye)}, {"look_at", VectorJson(key.look_at)}});
+    if (kind.unit != ProjectionUnit::kNone) path.back()[kind.parameter] = key.lens;
+  }
+  return path;
+}
+
 }  // namespace
 
 Camera ReadCamera(const JsonCursor& value, NameTable* names) {
@@ -95,6 +137,7 @@ Camera ReadCamera(const JsonCursor& value, NameTable* names) {
     camera.projection = ReadProjection(projection);
     if (lens.present()) projection.Fail(fmt::format("conflicts with \"{}\"", lens.key()));
   }
+  ReadPath(object.Optional("path"), &camera);
   object.Finish();
 
   if (!has_eye || !has_target || !has_up) return camera;
@@ -112,6 +155,7 @@ Json CameraJson(const Camera& camera) {
                {"look_at", VectorJson(camera.look_at)},
                {"up", VectorJson(camera.up)}};
   WriteProjection(camera.projection, &json);
+  if (!camera.path.empty()) json["path"] = PathJson(camera);
   return json;
 }
 

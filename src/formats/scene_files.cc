@@ -36,6 +36,12 @@ Result<std::string> SceneFiles::Resolve(const std::string& from, const std::stri
   return path.string();
 }
 
+void SceneFiles::AddAnimation(const std::string& name, double seconds) {
+  animations_.push_back(name);
+  const bool counts = options_.animation.empty() || options_.animation == name;
+  if (counts) duration_ = std::max(duration_, seconds);
+}
+
 bool SceneFiles::Enter(const std::string& path) {
   const fs::path canonical = Canonical(path);
   if (std::find(open_.begin(), open_.end(), canonical) != open_.end()) return false;

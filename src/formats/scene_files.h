@@ -36,6 +36,11 @@ class SceneFiles {
   }
   const Warnings& warnings() const { return warnings_; }
 
+  // An animation that a model has, whether it counts or not.
+  void AddAnimation(const std::string& name, double seconds);
+  const std::vector<std::string>& animations() const { return animations_; }  // their names
+  double duration() const { return duration_; }  // seconds of the longest that counts
+
   // The scene itself and whatever was resolved.
   const std::vector<std::string>& paths() const { return paths_; }
 
@@ -45,6 +50,8 @@ class SceneFiles {
   std::vector<std::filesystem::path> open_;
   Warnings warnings_;
   std::vector<std::string> paths_;
+  std::vector<std::string> animations_;
+  double duration_ = 0;
 };
 
 }  // namespace sheaf

@@ -61,8 +61,13 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     camera.eye = transform.Point(camera.eye);
     camera.look_at = transform.Point(camera.look_at);
     camera.up = transform.Vector(camera.up);
-    if (KindOf(camera.projection).unit == ProjectionUnit::kLength) {
-      SetParameter(camera.projection, ParameterOf(camera.projection) * transform.Scale());
+    const bool has_length = KindOf(camera.projection).unit == ProjectionUnit::kLength;
+    const double lens = has_length ? transform.Scale() : 1;
+    SetParameter(camera.projection, ParameterOf(camera.projection) * lens);
+    for (CameraKey& key : camera.path) {
+      key.eye = transform.Point(key.eye);
+      key.look_at = transform.Point(key.look_at);
+      key.lens *= lens;
     }
   }
   return "";

@@ -200,11 +200,26 @@ void Check(const Light& light, FirstFault& fault) {
   fault.Number("intensity", light.intensity, kAtLeastZero);
 }
 
+void CheckPath(const Camera& camera, FirstFault& fault) {
+  const ProjectionKind& kind = KindOf(camera.projection);
+  for (std::size_t i = 0; i < camera.path.size(); ++i) {
+    const CameraKey& key = camera.path[i];
+    fault.Number("path.frame", key.frame, {-kMaxFrame, kMaxFrame, "a number in [-1e6, 1e6]"});
+    fault.Components("path.eye", key.eye, kPlace);
+    fault.Components("path.look_at", key.look_at, kPlace);
+    if (kind.unit != ProjectionUnit::kNone) {
+      fault.Number("path.lens", key.lens, {kSmallest, kind.largest, kind.range});
+    }
+    if (i > 0 && !(camera.path[i - 1].frame < key.frame)) fault.Fail("path is not in order");
+  }
+}
+
 void Check(const Camera& camera, FirstFault& fault) {
   fault.Components("eye", camera.eye, kPlace);
   fault.Components("look_at", camera.look_at, kPlace);
   fault.Direction("up", camera.up);
   if (!fault.found()) fault.Fail(TextOf(FindViewFault(camera)));
+  CheckPath(camera, fault);
   const ProjectionKind& kind = KindOf(camera.projection);
   if (kind.unit == ProjectionUnit::kNone) return;
   fault.Number(kind.parameter, ParameterOf(camera.projection),

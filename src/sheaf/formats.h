@@ -62,6 +62,13 @@ struct ReadOptions {
   // Width over height, > 0, of the pictures that a model without a camera is framed for. By default
   // that of Settings.
   std::optional<double> aspect = std::nullopt;
+  // The moment of a model's animations, in seconds; before the beginning and after the end they
+  // stand still. Where absent the model is at rest.
+  std::optional<double> time = std::nullopt;
+  // The one animation that counts, by its name; empty: all, at once.
+  std::string animation = {};
+  // Of a model without a camera, instead of one that frames it.
+  std::optional<Camera> camera = std::nullopt;
 };
 
 // Whether lights were put into a scene that had none: key, fill and rim.
@@ -73,6 +80,7 @@ struct ReadSceneResult {
   // What was left out or replaced: a line for each kind, with its first place and its number.
   std::vector<std::string> warnings;
   std::vector<std::string> files;  // that the scene was read from, itself first
+  double duration = 0.0;           // seconds of its longest animation; 0: the time moves nothing
 };
 
 // Reads a scene that can be rendered. A model without a camera gets one that frames it; one without

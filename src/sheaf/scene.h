@@ -257,13 +257,33 @@ inline constexpr ProjectionKind kProjectionKinds[] = {
 };
 static_assert(std::size(kProjectionKinds) == std::variant_size_v<Projection>);
 
+// No frame of an animation is further from frame 0.
+inline constexpr double kMaxFrame = 1e6;
+
+// Where a camera is at a frame of an animation.
+struct CameraKey {
+  double frame = 0.0;  // in [-kMaxFrame, kMaxFrame]
+  Vec3d eye{0.0};
+  Vec3d look_at{0.0, 0.0, -1.0};
+  double lens = 60.0;  // the number of the camera's projection, where it has one
+};
+
 struct Camera {
   std::string name;
   Vec3d eye{0.0};
   Vec3d look_at{0.0, 0.0, -1.0};
   Vec3d up{0.0, 1.0, 0.0};
   Projection projection;
+  // By ascending frame, no frame twice; empty: the camera stands still. Rendering takes no notice:
+  // it sees what the members above say.
+  std::vector<CameraKey> path = {};
 };
+
+// The camera at a frame of its path, which may lie between two keys, and without a path. `eye` and
+// `look_at` move on Catmull-Rom splines through the keys, the lens linearly; before the first key
+// and after the last the camera stands still. Where two keys in turn have the same place it stays
+// there. `path` keeps the rules above.
+SHEAF_API Camera CameraAt(const Camera& camera, double frame);
 
 // A named list of cameras, rendered together.
 struct View {
