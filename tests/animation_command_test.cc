@@ -103,11 +103,11 @@ TEST_CASE("--time is the moment of a frame, and convert keeps a path") {
   WriteText(work / "m.gltf", MovingGltf());
   const auto render = [&](const std::string& scene, std::vector<std::string> options) {
     options.insert(options.begin(),
-                   {"render", work / scene, "-q", "--size", "32x24", "-o", work / "a.png"});
+                   {"render", work / scene, "-q", "--size", "32x24", "-o", work / "a.pfm"});
     const Outcome outcome = work.Run(options);
     CAPTURE(outcome.err);
     REQUIRE(outcome.code == 0);
-    return ReadText(work / "a.png");
+    return ReadText(work / "a.pfm");
   };
   const std::string frame = render("m.gltf", {"--frames", "12"});
   CHECK(frame == render("m.gltf", {"--time", "0.5"}));

@@ -133,6 +133,19 @@ void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
       ->excludes("--camera");
 }
 
+std::string GivenText(const CLI::App& app, const std::set<std::string>& except) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || except.contains(option->get_name())) continue;
+    text += option->get_name();
+    for (const std::string& word : option->results()) {
+      text += fmt::format(" {}:{}", word.size(), word);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 std::vector<std::string> GivenOptions(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {

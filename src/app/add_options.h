@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,6 +92,10 @@ void AddJson(CLI::App& app, std::string& destination, const char* description);
 
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);
+
+// The options and inputs that the parsed command line has, with their values, but for those that
+// are named: a text that differs where the work does.
+std::string GivenText(const CLI::App& app, const std::set<std::string>& except);
 
 // The options and inputs that the parsed command line has, by the names given above.
 std::vector<std::string> GivenOptions(const CLI::App& app);

@@ -1,10 +1,12 @@
 #include "src/app/output_path.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
 
+#include "sheaf/formats.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/formats/printable.h"
@@ -26,6 +28,19 @@ std::size_t FindFrameField(std::string_view path, std::size_t from = 0) {
 
 }  // namespace
 
+Status CheckPictureOutput(const std::string& output, const std::string& format) {
+  const bool is_stdout = output == kStandardOutputPath;
+  if (const Status known = CheckPicturePath(FormatPath(output, format)); !known) {
+    if (!is_stdout) return known;
+    return Usage(
+        fmt::format("-o {}: needs --format, because its name does not tell the format", output));
+  }
+  if (is_stdout && isatty(STDOUT_FILENO) != 0) {
+    return Usage(fmt::format("-o {}: a terminal shows no pictures", output));
+  }
+  return Done{};
+}
+
 bool HasCameraField(std::string_view path) {
   return path.find(kCameraField) != std::string_view::npos;
 }
@@ -35,6 +50,13 @@ bool HasFrameField(std::string_view path) { return FindFrameField(path) != std::
 std::string FixedFolder(const std::string& path) {
   const std::size_t field = std::min(path.find(kCameraField), FindFrameField(path));
   return path.substr(0, path.substr(0, field).rfind('/') + 1);
+}
+
+std::string SequenceJournalPath(const std::string& output) {
+  const std::string folder = FixedFolder(output);
+  std::string name = output.substr(folder.size());
+  std::replace(name.begin(), name.end(), '/', '_');
+  return fmt::format("{}.{}.sheaf-journal", folder, name);
 }
 
 Result<std::string> ExpandPath(const std::string& output, const std::string& camera,

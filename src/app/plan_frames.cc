@@ -1,8 +1,8 @@
 #include "src/app/plan_frames.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "src/app/choose.h"
@@ -20,16 +20,10 @@ namespace {
 Status CheckFormat(const RenderRequest& request) {
   const std::string named = FormatPath(request.output, request.format);
   const bool is_stdout = request.output == kStandardOutputPath;
-  if (const Status known = CheckPicturePath(named); !known) {
-    if (!is_stdout) return known;
-    return Usage(fmt::format("-o {}: needs --format, because its name does not tell the format",
-                             request.output));
-  }
+  const Status known = CheckPictureOutput(request.output, request.format);
+  if (!known) return known;
   if (is_stdout && request.statistics == "-") {
     return Usage("-o, --json: both to standard output; --json=FILE writes a file");
-  }
-  if (is_stdout && isatty(STDOUT_FILENO) != 0) {
-    return Usage(fmt::format("-o {}: a terminal shows no pictures", request.output));
   }
   if (!request.layers.empty() && !request.format.empty() && !HoldsLayers(named)) {
     return Usage(
@@ -38,6 +32,13 @@ Status CheckFormat(const RenderRequest& request) {
   }
   if (const Status shown = CheckLook(request.look, named); !shown) return shown;
   return request.bits ? CheckPictureBits(named, *request.bits) : Status(Done{});
+}
+
+// Whether it leads to a file, there already or not: no pipe, and no name of an open descriptor.
+bool IsFilePath(const std::string& path) {
+  std::error_code ignored;
+  if (path.starts_with("/dev/") || path.starts_with("/proc/")) return false;
+  return !std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored);
 }
 
 // Whether the options for animations fit each other and the path.
@@ -112,6 +113,10 @@ SceneOptions OptionsAt(const RenderRequest& request, int frame) {
 
 Status CheckCommandLine(const RenderRequest& request) {
   if (const Status sound = CheckSequence(request); !sound) return sound;
+  if (request.resume && !IsFilePath(request.output)) {
+    return Usage(fmt::format("--resume: {} is no file that could be gone on with",
+                             Printable(request.output)));
+  }
   if (request.choice.cameras.size() > 1 && !HasCameraField(request.output)) {
     return Usage(
         fmt::format("-o {}: several cameras need {} in the path", request.output, kCameraField));

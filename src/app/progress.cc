@@ -162,16 +162,19 @@ SequencePace::SequencePace(std::uint64_t pictures) : pictures_(pictures), start_
 std::string SequencePace::Text() const {
   if (pictures_ == 1) return "";
   const std::string place = fmt::format("{}/{}", done_ + 1, pictures_);
-  if (done_ == 0) return place;
+  if (done_ == skipped_) return place;
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  const double left = seconds / static_cast<double>(done_) * static_cast<double>(pictures_ - done_);
+  const double left =
+      seconds / static_cast<double>(done_ - skipped_) * static_cast<double>(pictures_ - done_);
   return fmt::format("{}, {} left", place, Duration(left));
 }
 
 StepWatch::StepWatch(ProgressStyle style, std::string label, std::uint64_t steps)
     : style_(style), label_(std::move(label)), steps_(steps), start_(Clock::now()) {}
 
-StepWatch::~StepWatch() {
+StepWatch::~StepWatch() { Clear(); }
+
+void StepWatch::Clear() {
   if (style_ == ProgressStyle::kBar && done_ > 0) PrintError("\r\x1b[K");
 }
 

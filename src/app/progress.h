@@ -89,6 +89,9 @@ class StepWatch {
   // A step is done.
   void Advance();
 
+  // Takes the bar away until the next step, so that a line can be printed.
+  void Clear();
+
  private:
   const ProgressStyle style_;
   const std::string label_;
@@ -103,8 +106,9 @@ class SequencePace {
  public:
   explicit SequencePace(std::uint64_t pictures);
 
-  // A picture is done.
+  // A picture is done, by this run or before it.
   void Advance() { ++done_; }
+  void Skip() { ++done_, ++skipped_; }
 
   // Of the picture in work: "3/24, 1:20 left"; of the first "1/24", of an only one nothing.
   std::string Text() const;
@@ -112,7 +116,7 @@ class SequencePace {
  private:
   const std::uint64_t pictures_;
   const std::chrono::steady_clock::time_point start_;
-  std::uint64_t done_ = 0;
+  std::uint64_t done_ = 0, skipped_ = 0;
 };
 
 }  // namespace sheaf

@@ -3,24 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "sheaf/scene.h"
+#include "src/app/band_journal.h"
 #include "src/app/choose.h"
-#include "src/app/dark_picture.h"
 #include "src/app/frame_writer.h"
-#include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/output_path.h"
 #include "src/app/plan_frames.h"
 #include "src/app/print_message.h"
 #include "src/app/progress.h"
+#include "src/app/render_picture.h"
 #include "src/app/render_request.h"
+#include "src/app/run_identity.h"
+#include "src/app/sequence_journal.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
 #include "src/app/suspect_scene.h"
 #include "src/core/atomic_file.h"
-#include "src/formats/picture.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -66,59 +68,6 @@ ProgressStyle ChooseProgressStyle(const RenderRequest& request) {
   return ProgressStyleNamed(request.quiet ? "none" : request.progress);
 }
 
-PixelSize PictureSize(const RenderOptions& options) {
-  if (options.crop) return {options.crop->width(), options.crop->height()};
-  return {options.width, options.height};
-}
-
-std::uint64_t PixelCount(const PixelSize& size) {
-  return static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
-}
-
-Result<FrameRecord> RenderFrame(const RenderRequest& request, const Scene& scene, Frame frame,
-                                const RenderOptions& options, ProgressStyle style,
-                                std::string label) {
-  const PixelSize size = PictureSize(options);
-  FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
-  if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
-    const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
-    if (!look) return look.error();
-    frame.look = look.value();
-  }
-  // Before the first ray: what cannot be written costs no rendering.
-  Result<FrameWriter> writer =
-      FrameWriter::Create(scene, frame, options, request.bits, request.scene);
-  if (!writer) return writer.error();
-  FrameWatch watch(style, std::move(label), options, PixelCount(size));
-  HeatPicture heat(options);
-  DarkPicture dark(scene.settings.transfer, frame.look.ev);
-  const RowSink write = [&](const Film& rows) {
-    dark.AddRows(rows);
-    if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
-    return writer.value().WriteRows(rows);
-  };
-  const Status rendered =
-      RenderRows(scene, *frame.camera, options, write, &record.stats, watch.progress());
-  // A signal in the last tenth of a second may find the frame finished. The command stops even so.
-  if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {
-    return Error{ErrorKind::kInterrupted,
-                 fmt::format("interrupted; {} was not written", frame.path)};
-  }
-  if (!rendered) return rendered.error();
-  watch.Finish(record.stats);
-  if (const Status written = writer.value().Finish(); !written) return written.error();
-  // A part of a picture may well be empty.
-  if (!options.crop && !request.quiet) {
-    const Result<std::string> reason = dark.Explain(scene, *frame.camera, options);
-    if (reason && !reason.value().empty()) PrintMessage("sheaf: warning: " + reason.value());
-  }
-  for (const auto& [layer, path] : frame.beside) {
-    if (layer != Layer::kHeat) continue;
-    if (const Status written = heat.Write(path); !written) return written.error();
-  }
-  return record;
-}
-
 Status WriteStatistics(const std::string& destination, const std::string& json) {
   if (destination.empty()) return Done{};
   return destination == "-" ? WriteStandardOutput(json) : WriteFileWhole(destination, json);
@@ -152,31 +101,78 @@ Result<OpenedScene> OpenFirst(const RenderRequest& request, ProgressStyle style)
                            request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
 }
 
+std::vector<std::string> FilesOf(const Frame& frame) {
+  std::vector<std::string> files = {frame.path};
+  for (const auto& [layer, path] : frame.beside) files.push_back(path);
+  return files;
+}
+
+// What an earlier run has left of the same work; nothing of it where --resume is not given.
+struct Earlier {
+  std::optional<std::uint64_t> identity;
+  std::optional<SequenceJournal> sequence;  // where there are several pictures
+};
+
+Result<Earlier> FindEarlier(const RenderRequest& request, const RenderOptions& options,
+                            const std::vector<std::string>& files, std::size_t pictures) {
+  Earlier earlier;
+  if (!request.resume) return earlier;
+  // Fast arithmetic has other bits on every target.
+  const std::string target =
+      options.precision == Precision::kFast ? options.target.name() : std::string();
+  earlier.identity = RunIdentity(request.identity + target, files);
+  if (pictures == 1) return earlier;
+  const std::string path = SequenceJournalPath(request.output);
+  Result<SequenceJournal> sequence = SequenceJournal::Open(path, *earlier.identity);
+  if (!sequence) return sequence.error();
+  if (sequence.value().was_other() && !request.quiet) {
+    PrintMessage(fmt::format("sheaf: warning: {}: of another scene, or other options; begun anew",
+                             PrintablePath(path)));
+  }
+  earlier.sequence = std::move(sequence).value();
+  return earlier;
+}
+
 // Renders the frames in turn. Each picture is written when it is ready.
 Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
                                               const RenderOptions& options, ProgressStyle style,
                                               std::vector<Frame> frames, OpenedScene* opened) {
+  Result<Earlier> found = FindEarlier(request, options, opened->files, frames.size());
+  if (!found) return found.error();
+  std::optional<SequenceJournal>& journal = found.value().sequence;
   SequencePace pace(frames.size());
   std::vector<FrameRecord> records;
   std::optional<int> posed = frames.front().number;
   for (Frame& frame : frames) {
+    const std::vector<std::string> files = FilesOf(frame);
+    if (journal && journal->Has(files)) {
+      const std::string& camera = opened->cameras[frame.camera_index].name;
+      records.push_back({camera, frame.number, frame.path, options, {}, 0, true});
+      if (!request.quiet) PrintMessage("kept " + frame.path);
+      RemoveJournal(JournalPath(frame.path));
+      pace.Skip();
+      continue;
+    }
     if (frame.number != posed) {
       const Status moved = PoseScene(request.scene, OptionsAt(request, *frame.number), opened);
       if (!moved) return moved.error();
       posed = frame.number;
     }
     frame.camera = &opened->scene.cameras[frame.camera_index];
-    Result<FrameRecord> record =
-        RenderFrame(request, opened->scene, frame, options, style, LabelOf(frame, pace));
+    Result<FrameRecord> record = RenderPicture(request, opened->scene, frame, options, style,
+                                               LabelOf(frame, pace), found.value().identity);
     if (!record) return record.error();
-    std::vector<std::string> paths = {frame.path};
-    for (const auto& [layer, path] : frame.beside) paths.push_back(path);
-    for (const std::string& path : paths) {
-      if (!request.quiet) PrintMessage("wrote " + path);
+    if (journal) {
+      if (const Status added = journal->Add(files); !added) return added.error();
+    }
+    if (request.resume) RemoveJournal(JournalPath(frame.path));
+    for (const std::string& file : files) {
+      if (!request.quiet) PrintMessage("wrote " + file);
     }
     records.push_back(std::move(record).value());
     pace.Advance();
   }
+  if (journal) RemoveJournal(SequenceJournalPath(request.output));
   return records;
 }
 

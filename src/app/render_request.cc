@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "src/app/add_options.h"
 #include "src/app/layer_picture.h"
 #include "src/formats/format_table.h"
@@ -74,11 +76,18 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
             &ParsePart);
   AddInteger(app, "--tile-size", request.tile_size, 1, kMaxTileSize,
              "Pixels a side of a thread's tile, which change no picture but in fast precision");
+  AddFlag(app, "--resume", request.resume,
+          "Keep a journal of what is done, and go on where an earlier run ended");
   AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
             "What stderr shows meanwhile");
   AddFlag(app, "--no-floor", request.no_floor, "No floor under a model without lights");
   AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
   AddJson(app, request.statistics, "Statistics as JSON to stdout, or into FILE");
+  // Each frame of a sequence is the same whatever others there are.
+  app.parse_complete_callback([&app, &request] {
+    request.identity =
+        GivenText(app, {"--frames", "--resume", "--threads", "--progress", "--quiet", "--json"});
+  });
 }
 
 }  // namespace sheaf

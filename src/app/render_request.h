@@ -47,6 +47,8 @@ struct RenderRequest {
   std::optional<PixelRect> crop;
   LookOptions look;
   Layers layers;  // of --aov
+  bool resume = false;
+  std::string identity;  // the options that a picture's bits depend on, as text
   std::string progress = "auto";
   bool quiet = false, no_floor = false;
   std::string statistics;  // empty: none; "-": stdout; else a file

@@ -40,6 +40,11 @@ Json FrameJson(const FrameRecord& frame) {
   const RenderOptions& options = frame.options;
   const RenderStats& stats = frame.stats;
   const double rays = static_cast<double>(stats.rays.traced());
+  if (frame.is_kept) {
+    Json kept = {{"camera", frame.camera}, {"picture", frame.picture}, {"kept", true}};
+    if (frame.frame) kept["frame"] = *frame.frame;
+    return kept;
+  }
   Json json = {
       {"camera", frame.camera},
       {"picture", frame.picture},
@@ -67,6 +72,7 @@ Json FrameJson(const FrameRecord& frame) {
       {"rays_per_second", stats.wall_seconds > 0.0 ? rays / stats.wall_seconds : 0.0},
   };
   if (frame.frame) json["frame"] = *frame.frame;
+  if (frame.resumed_rows > 0) json["resumed_rows"] = frame.resumed_rows;
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;

@@ -16,7 +16,9 @@ struct FrameRecord {
   std::optional<int> frame;  // of a sequence
   std::string picture;       // its path
   RenderOptions options;
-  RenderStats stats;
+  RenderStats stats;     // of what this run rendered
+  int resumed_rows = 0;  // that an earlier run had rendered
+  bool is_kept = false;  // whether an earlier run had finished it
 };
 
 // One JSON object, indented, with a newline at its end. Bytes of a name that are not UTF-8 are

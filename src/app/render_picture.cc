@@ -1,0 +1,139 @@
+#include "src/app/render_picture.h"
+
+#include <fmt/format.h>
+
+#include "src/app/band_journal.h"
+#include "src/app/choose.h"
+#include "src/app/choose_look.h"
+#include "src/app/dark_picture.h"
+#include "src/app/heat_picture.h"
+#include "src/app/interrupt.h"
+#include "src/app/print_message.h"
+#include "src/core/checksum.h"
+#include "src/formats/picture.h"
+#include "src/formats/printable.h"
+
+namespace sheaf {
+namespace {
+
+PixelRect AreaOf(const RenderOptions& options) {
+  return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+}
+
+std::uint64_t PixelCount(const PixelRect& area) {
+  return static_cast<std::uint64_t>(area.width()) * static_cast<std::uint64_t>(area.height());
+}
+
+// Of one picture of a run.
+std::uint64_t IdentityOf(std::uint64_t run, const Frame& frame) {
+  Checksum checksum;
+  checksum.Add(&run, sizeof(run));
+  const std::string text =
+      fmt::format("{} {} {}", frame.camera_index,
+                  frame.number ? fmt::format("{}", *frame.number) : "-", frame.path);
+  checksum.Add(text.data(), text.size());
+  return checksum.value();
+}
+
+// Nothing without an identity.
+Result<std::optional<BandJournal>> OpenJournal(const RenderRequest& request, const Frame& frame,
+                                               std::optional<std::uint64_t> identity) {
+  std::optional<BandJournal> journal;
+  if (!identity) return journal;
+  const std::string path = JournalPath(frame.path);
+  Result<BandJournal> opened = BandJournal::Open(path, IdentityOf(*identity, frame));
+  if (!opened) return opened.error();
+  if (opened.value().was_other() && !request.quiet) {
+    PrintMessage(fmt::format("sheaf: warning: {}: of another scene, or other options; begun anew",
+                             PrintablePath(path)));
+  }
+  journal.emplace(std::move(opened).value());
+  return journal;
+}
+
+// Hands the bands of an earlier run to `write`. Returns how many rows they are.
+Result<int> Restore(const PixelRect& area, Layers layers, const RowSink& write,
+                    BandJournal* journal) {
+  int rows = 0;
+  while (rows < area.height()) {
+    Film band;
+    const Result<bool> read = journal->Read(area.width(), layers, area.height() - rows, &band);
+    if (!read) return read.error();
+    if (!read.value()) break;
+    if (const Status written = write(band); !written) return written.error();
+    rows += band.height;
+  }
+  return rows;
+}
+
+}  // namespace
+
+Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
+                                  const RenderOptions& options, ProgressStyle style,
+                                  const std::string& label, std::optional<std::uint64_t> identity) {
+  FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
+  if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
+    const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
+    if (!look) return look.error();
+    frame.look = look.value();
+  }
+  // Before the first ray: what cannot be written costs no rendering.
+  Result<FrameWriter> writer =
+      FrameWriter::Create(scene, frame, options, request.bits, request.scene);
+  if (!writer) return writer.error();
+  Result<std::optional<BandJournal>> journal = OpenJournal(request, frame, identity);
+  if (!journal) return journal.error();
+  HeatPicture heat(options);
+  DarkPicture dark(scene.settings.transfer, frame.look.ev);
+  const RowSink write = [&](const Film& rows) {
+    dark.AddRows(rows);
+    if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
+    return writer.value().WriteRows(rows);
+  };
+  // On disk before anything else may fail.
+  const RowSink keep_and_write = [&](const Film& rows) {
+    const Status kept = journal.value()->Append(rows);
+    return kept ? write(rows) : kept;
+  };
+  PixelRect area = AreaOf(options);
+  if (journal.value()) {
+    const Result<int> rows = Restore(area, options.layers, write, &*journal.value());
+    if (!rows) return rows.error();
+    record.resumed_rows = rows.value();
+    if (rows.value() > 0 && !request.quiet) {
+      PrintMessage(
+          fmt::format("{}: goes on after {} of {} rows", label, rows.value(), area.height()));
+    }
+    area.y0 += rows.value();
+  }
+  if (area.height() > 0) {
+    FrameWatch watch(style, label, options, PixelCount(area));
+    RenderOptions rest = options;
+    if (record.resumed_rows > 0) rest.crop = area;
+    const Status rendered =
+        RenderRows(scene, *frame.camera, rest, journal.value() ? keep_and_write : write,
+                   &record.stats, watch.progress());
+    // A signal in the last tenth of a second may find the frame finished. The command stops even
+    // so.
+    if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("interrupted; {} was not written{}", frame.path,
+                               journal.value() ? "; --resume goes on with it" : "")};
+    }
+    if (!rendered) return rendered.error();
+    watch.Finish(record.stats);
+  }
+  if (const Status written = writer.value().Finish(); !written) return written.error();
+  // A part of a picture may well be empty.
+  if (!options.crop && !request.quiet) {
+    const Result<std::string> reason = dark.Explain(scene, *frame.camera, options);
+    if (reason && !reason.value().empty()) PrintMessage("sheaf: warning: " + reason.value());
+  }
+  for (const auto& [layer, path] : frame.beside) {
+    if (layer != Layer::kHeat) continue;
+    if (const Status written = heat.Write(path); !written) return written.error();
+  }
+  return record;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,27 @@
+// One picture of `sheaf render`: rendered, shown as it comes along, written.
+#ifndef SHEAF_APP_RENDER_PICTURE_H_
+#define SHEAF_APP_RENDER_PICTURE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sheaf/error.h"
+#include "sheaf/render.h"
+#include "sheaf/scene.h"
+#include "src/app/frame_writer.h"
+#include "src/app/progress.h"
+#include "src/app/render_request.h"
+#include "src/app/statistics_json.h"
+
+namespace sheaf {
+
+// With an identity of the run, finished bands go to a journal beside the picture, and those that
+// an earlier run left there are taken from it. The journal stays: RemoveJournal.
+Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
+                                  const RenderOptions& options, ProgressStyle style,
+                                  const std::string& label, std::optional<std::uint64_t> identity);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_RENDER_PICTURE_H_
