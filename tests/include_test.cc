@@ -89,7 +89,9 @@ bool MayIncludeSimd(const std::string& layer, const std::string& header) {
                                                "simd/shading.h", "simd/primitives.h"};
   if (layer == "src/sheaf") return false;
   if (kPlain.count(header) || layer == "src/render") return true;
-  if (layer == "src/bvh" || layer == "src/core") return header == "simd/kernels.h";
+  // The lab measures kernels one by one.
+  const bool calls_kernels = layer == "src/bvh" || layer == "src/core" || layer == "src/lab";
+  if (calls_kernels) return header == "simd/kernels.h";
   return layer == "src/scalar" &&
          (header == "simd/pow_terms.h" || header == "simd/sin_cos_terms.h" ||
           header == "simd/roundoffs.h");

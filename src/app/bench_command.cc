@@ -7,16 +7,19 @@
 
 #include "sheaf/render.h"
 #include "sheaf/target.h"
+#include "src/app/add_options.h"
 #include "src/app/bench_baseline.h"
 #include "src/app/bench_report.h"
 #include "src/app/bench_request.h"
 #include "src/app/interrupt.h"
+#include "src/app/kernels_report.h"
 #include "src/app/machine.h"
 #include "src/app/measure_bench.h"
 #include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/core/atomic_file.h"
+#include "src/lab/measure_kernels.h"
 
 namespace sheaf {
 namespace {
@@ -79,8 +82,46 @@ Result<BenchReport> ReadInputs(const BenchRequest& request) {
   return baseline;
 }
 
+// The kernels are what they are, whatever scene and picture.
+Status CheckKernelOptions(const BenchRequest& request) {
+  for (const std::string& name : GivenOptions(*request.command)) {
+    const bool is_known = name == "--kernels" || name == "--targets" || name == "--repetitions" ||
+                          name == "--progress" || name == "--json";
+    if (!is_known) return Usage(fmt::format("{}: not with --kernels", name));
+  }
+  if (!request.json.empty() && request.json != "-") return CheckWritable(request.json);
+  return Done{};
+}
+
+Status RunKernels(const BenchRequest& request) {
+  if (const Status heard = CheckKernelOptions(request); !heard) return heard;
+  const Result<std::vector<std::string>> targets = ExpandTargets(request.targets);
+  if (!targets) return targets.error();
+  CatchInterrupts();
+  const int repetitions = request.repetitions.value_or(9);
+  StepWatch watch(ProgressStyleNamed(request.progress), "bench",
+                  KernelSteps(targets.value().size(), repetitions));
+  const Result<std::vector<KernelRow>> rows =
+      MeasureKernels(targets.value(), repetitions, [&watch] {
+        watch.Advance();
+        return CheckInterrupted();
+      });
+  if (!rows) return rows.error();
+  const std::string json = KernelsJson(rows.value(), ThisMachine());
+  if (request.json == "-") return WriteStandardOutput(json);
+  if (!request.json.empty()) {
+    if (const Status written = WriteFileWhole(request.json, json); !written) return written;
+  }
+  return WriteStandardOutput(KernelsText(rows.value()));
+}
+
 // kDifferent where a row became slower than in the baseline, kUndecided where one has no verdict.
 Result<ExitCode> RunBench(const BenchRequest& request) {
+  if (request.kernels) {
+    const Status ran = RunKernels(request);
+    return ran ? Result<ExitCode>(ExitCode::kOk) : ran.error();
+  }
+  if (request.scene.empty()) return Usage("SCENE is required, or --kernels");
   const bool has_baseline = !request.baseline.empty();
   const Result<BenchReport> baseline = ReadInputs(request);
   if (!baseline) return baseline.error();

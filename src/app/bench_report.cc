@@ -152,25 +152,24 @@ std::vector<double> InScalars(const BenchRow& row, const BenchRow& scalar) {
   return ratios;
 }
 
+void AddMachine(const Machine& machine, Json* json) {
+  (*json)["processor"] = machine.processor;
+  (*json)["cores"] = machine.cores;
+  (*json)["affinity"] = machine.affinity;
+  (*json)["compiler"] = machine.compiler;
+  (*json)["flags"] = machine.flags;
+  (*json)["build_type"] = machine.build_type;
+  (*json)["load"] = LoadAverage();
+}
+
 std::string BenchText(const BenchReport& report) { return RowsText(report) + PhasesText(report); }
 
 std::string BenchJson(const BenchReport& report) {
-  const Machine& machine = report.machine;
-  Json json = {{"sheaf", kVersion},
-               {"date", Today()},
-               {"scene", report.scene},
-               {"camera", report.camera},
-               {"width", report.width},
-               {"height", report.height},
-               {"samples", report.samples},
-               {"processor", machine.processor},
-               {"cores", machine.cores},
-               {"affinity", machine.affinity},
-               {"compiler", machine.compiler},
-               {"flags", machine.flags},
-               {"build_type", machine.build_type},
-               {"load", LoadAverage()},
-               {"other_cores", report.other_cores}};
+  Json json = {{"sheaf", kVersion},        {"date", Today()},       {"scene", report.scene},
+               {"camera", report.camera},  {"width", report.width}, {"height", report.height},
+               {"samples", report.samples}};
+  AddMachine(report.machine, &json);
+  json["other_cores"] = report.other_cores;
   for (const BenchRow& row : report.rows) {
     json["rows"].push_back(RowJson(row, FindRow(report, "scalar", row.threads)));
   }

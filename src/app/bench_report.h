@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct BenchReport {
   Machine machine;         // empty where a file does not tell
   double other_cores = 0;  // that other processes kept busy meanwhile
 };
+
+// Adds what the machine is, and its load.
+void AddMachine(const Machine& machine, nlohmann::ordered_json* json);
 
 // Null where there is none.
 const BenchRow* FindRow(const BenchReport& report, const std::string& target, int threads);

@@ -5,7 +5,11 @@
 namespace sheaf {
 
 void AddBenchOptions(CLI::App& app, BenchRequest& request) {
-  AddInput(app, "SCENE", request.scene, Presence::kNeeded, "The scene file");
+  request.command = &app;
+  AddInput(app, "SCENE", request.scene, Presence::kOptional,
+           "The scene file (needed without --kernels)");
+  AddFlag(app, "--kernels", request.kernels,
+          "Measure each kernel on each target instead of a scene's frames");
   AddSceneOptions(app, request.options);
   AddMomentOptions(app, request.options);
   AddName(app, "--camera", request.camera, "NAME", "The camera; the scene's first if absent");

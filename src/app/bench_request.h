@@ -27,6 +27,8 @@ struct BenchRequest {
   std::vector<int> threads = {1};
   std::string baseline;  // empty: none
   bool absolute = false, force = false;
+  bool kernels = false;  // instead of a scene's frames
+  const CLI::App* command = nullptr;
   std::string progress = "auto";
   std::string json;  // empty: a table; "-": stdout; else a file, besides the table
 };
