@@ -134,6 +134,32 @@ TEST_CASE("merge joins parts of one picture alone") {
   CHECK(Contains(refused("a.pfm", "b.pfm"), "b.pfm: 9 pixels wide, and "));
 }
 
+TEST_CASE("convert and merge write to a pipe in the format that is named") {
+  const Workspace work;
+  REQUIRE(work.Render({"-o", work / "whole.png"}).code == 0);
+  REQUIRE(work.Render({"-o", work / "1.png", "--tile", "1/2"}).code == 0);
+  REQUIRE(work.Render({"-o", work / "2.png", "--tile", "2/2"}).code == 0);
+  REQUIRE(work.Run({"merge", work / "1.png", work / "2.png", "-o", work / "m.png"}).code == 0);
+  REQUIRE(work.Run({"convert", work / "whole.png", "-o", work / "c.pfm"}).code == 0);
+  const Outcome merged =
+      work.Run({"merge", work / "1.png", work / "2.png", "-o", "-", "--format", "png"});
+  CHECK(merged.code == 0);
+  CHECK(merged.out == ReadText(work / "m.png"));
+  const Outcome converted = work.Run({"convert", work / "whole.png", "-o", "-", "--format", "pfm"});
+  CHECK(converted.code == 0);
+  CHECK(converted.out == ReadText(work / "c.pfm"));
+  for (const auto& command :
+       std::vector<std::vector<std::string>>{{"merge", work / "1.png", work / "2.png", "-o", "-"},
+                                             {"convert", work / "whole.png", "-o", "-"}}) {
+    const Outcome outcome = work.Run(command);
+    CHECK(outcome.code == 2);
+    CHECK(Contains(outcome.err, "-o /dev/stdout: needs --format"));
+  }
+  const Outcome scene = work.Run({"convert", kScene, "-o", work / "s.json", "--format", "png"});
+  CHECK(scene.code == 2);
+  CHECK(Contains(scene.err, "--format: for pictures"));
+}
+
 TEST_CASE("convert keeps every bit that the format holds") {
   const Workspace work;
   REQUIRE(work.Run({"render", kScene, "-o", work / "a.exr", "-q", "--size", "40x30"}).code == 0);

@@ -18,7 +18,7 @@ enum class Mode { kRenderings, kPictures };
 // Refuses an option that only the other mode reads.
 Status CheckOptions(const CLI::App& command, Mode mode) {
   for (const std::string& name : GivenOptions(command)) {
-    if (name == "INPUT" || name == "--json") continue;
+    if (name == "INPUT" || name == "--json" || name == "--progress") continue;
     const bool is_of_pictures = name == "--transfer" || name == "--fail";
     if (is_of_pictures == (mode == Mode::kPictures)) continue;
     return Usage(fmt::format("{}: only where {} compared", name,

@@ -8,6 +8,7 @@
 
 #include "src/app/display_picture.h"
 #include "src/app/json_text.h"
+#include "src/app/progress.h"
 #include "src/app/standard_output.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
@@ -105,6 +106,7 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
   Json json = {{"reference", request.inputs.front()}, {"pictures", Json::array()}};
   ExitCode code = ExitCode::kOk;
   RunningMeans means;
+  StepWatch watch(ProgressStyleNamed(request.progress), "compare", request.inputs.size() - 1);
   for (std::size_t i = 1; i < request.inputs.size(); ++i) {
     const std::string& path = request.inputs[i];
     Result<Film> test = ReadDisplayValues(path, transfer);
@@ -132,7 +134,9 @@ Result<ExitCode> ComparePictures(const CompareRequest& request) {
     }
     json["pictures"].push_back(entry);
     means.Add(metrics);
+    watch.Advance();
     if (request.json) continue;
+    watch.Clear();
     const Status written = WriteStandardOutput(fmt::format(
         "{}: rmse {:.6g}, psnr {:.2f} dB, largest error {:.6g}, {} pixels over 1/255, flip "
         "{:.6g}{}{}{}\n",

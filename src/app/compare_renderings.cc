@@ -119,12 +119,16 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
   CatchInterrupts();
   Json json = {{"scene", path}, {"reference", renderers.front().Name()}, {"runs", Json::array()}};
   std::uint64_t differing = 0, runs = 0;
+  StepWatch watch(ProgressStyleNamed(request.progress), "compare",
+                  cameras.value().size() * renderers.size());
   for (const Camera* camera : cameras.value()) {
     const Result<Film> expected = RenderWith(renderers.front(), scene, *camera, options);
     if (!expected) return expected.error();
+    watch.Advance();
     for (std::size_t i = 1; i < renderers.size(); ++i) {
       const Result<Film> found = RenderWith(renderers[i], scene, *camera, options);
       if (!found) return found.error();
+      watch.Advance();
       const FilmDifference difference = CompareFilms(
           expected.value(), found.value(), static_cast<std::uint32_t>(request.max_ulp.value_or(0)));
       Json run = {{"camera", camera->name},
@@ -136,6 +140,7 @@ Result<ExitCode> CompareRenderings(const CompareRequest& request) {
       ++runs;
       differing += difference.pixels > 0;
       if (request.json) continue;
+      watch.Clear();
       const Status written = WriteStandardOutput(
           fmt::format("{}: {}: {}\n", Printable(camera->name), renderers[i].Name(), line));
       if (!written) return written.error();

@@ -44,6 +44,8 @@ void AddCompareOptions(CLI::App& app, CompareRequest& request) {
             "a list of limits of rmse, psnr, largest, over or flip, like rmse=0.01,psnr=40",
             "Exit with 1 where a picture breaks a limit: rmse, psnr, largest, over, flip",
             &ParseLimits);
+  AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
+            "What stderr shows meanwhile");
   AddFlag(app, "--json", request.json, "The result as JSON");
 }
 

@@ -33,6 +33,7 @@ struct CompareRequest {
   std::string transfer = "linear";
   std::vector<std::pair<std::string, double>> limits;  // of --fail, by metric
 
+  std::string progress = "auto";
   bool json = false;
 };
 

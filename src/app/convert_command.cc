@@ -11,6 +11,7 @@
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
 #include "src/app/open_scene.h"
+#include "src/app/output_path.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/format_table.h"
 #include "src/formats/picture.h"
@@ -27,6 +28,7 @@ namespace {
 struct ConvertRequest {
   SceneOptions options;
   std::string input, output;
+  std::string format;  // of --format; empty: by the path's ending
   std::optional<int> bits;
   std::string transfer;  // empty: keep
   LookOptions look;
@@ -35,6 +37,7 @@ struct ConvertRequest {
 // The first option that only pictures take; null where there is none.
 const char* GivenPictureOption(const ConvertRequest& request) {
   if (request.bits) return "--bits";
+  if (!request.format.empty()) return "--format";
   if (!request.transfer.empty()) return "--transfer";
   if (request.look.exposure) return "--exposure";
   return request.look.tone.empty() ? nullptr : "--tone";
@@ -174,10 +177,12 @@ Status ConvertPicture(const ConvertRequest& request) {
     return Usage(
         fmt::format("{}: for scenes, and {} is a picture", *option, PrintablePath(request.input)));
   }
-  if (const Status known = CheckPicturePath(request.output); !known) return known;
-  if (const Status shown = CheckLook(request.look, request.output); !shown) return shown;
+  const Status known = CheckPictureOutput(request.output, request.format);
+  if (!known) return known;
+  const std::string named = FormatPath(request.output, request.format);
+  if (const Status shown = CheckLook(request.look, named); !shown) return shown;
   if (request.bits) {
-    if (const Status fits = CheckPictureBits(request.output, *request.bits); !fits) return fits;
+    if (const Status fits = CheckPictureBits(named, *request.bits); !fits) return fits;
   }
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
   Result<ReadPictureResult> read = ReadPicture(request.input);
@@ -192,13 +197,14 @@ Status ConvertPicture(const ConvertRequest& request) {
     spec.full_height = picture.full_height;
   }
   spec.metadata = picture.metadata;
+  spec.format = request.format;
   // Bits a channel stay where both hold bytes or both floats, and the output can hold as many.
-  const bool is_same_kind = picture.is_display != HoldsFloats(request.output);
-  const bool keeps_bits = is_same_kind && CheckPictureBits(request.output, picture.bits).ok();
+  const bool is_same_kind = picture.is_display != HoldsFloats(named);
+  const bool keeps_bits = is_same_kind && CheckPictureBits(named, picture.bits).ok();
   spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
   if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   const bool is_developed = request.look.exposure || !request.look.tone.empty();
-  if (keeps && picture.is_display && !HoldsFloats(request.output) && !is_developed) {
+  if (keeps && picture.is_display && !HoldsFloats(named) && !is_developed) {
     // A .png that says nothing of its transfer makes one that says nothing.
     const bool is_known = picture.is_srgb || picture.is_linear;
     spec.values = is_known ? Values::kEncoded : Values::kNumbers;
@@ -207,13 +213,14 @@ Status ConvertPicture(const ConvertRequest& request) {
   }
   if (request.look.exposure) spec.ev = request.look.exposure->ev.value_or(MeterExposure(film));
   if (request.look.tone == "filmic") spec.tone = Tone::kFilmic;
-  if (HoldsLayers(request.output)) spec.layers = film.held_layers();
+  if (HoldsLayers(named)) spec.layers = film.held_layers();
   return WritePicture(film, spec, request.output);
 }
 
 void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
   AddInput(app, "INPUT", request.input, Presence::kNeeded, "A scene, a model or a picture");
   AddOutput(app, request.output, "PATH", "The ending chooses the format (needed)");
+  AddPictureFormat(app, request.format);
   AddBits(app, request.bits);
   AddChoice(app, "--transfer", request.transfer, {"keep", "linear", "srgb"},
             "How a .png encodes light; keep: as the input does, or linear");
@@ -222,7 +229,9 @@ void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
   AddMomentOptions(app, request.options);
 }
 
-Status RunConvert(const ConvertRequest& request) {
+Status RunConvert(const ConvertRequest& given) {
+  ConvertRequest request = given;
+  if (request.output == "-") request.output = kStandardOutputPath;
   const Status apart = CheckOutputs({{"-o", request.output}}, {request.input});
   if (!apart) return apart;
   if (CheckPicturePath(request.input)) return ConvertPicture(request);

@@ -168,6 +168,9 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
   std::vector<ParetoPoint> points;
   std::vector<std::vector<double>> seconds;
   bool has_peer = true;
+  // A setting's first frame goes with one in double, which counts as a step too.
+  const auto rounds = static_cast<std::size_t>(repetitions);
+  StepWatch watch(StyleOf(request), name, settings.size() * (rounds + 1));
   for (int round = 0; round < repetitions; ++round) {
     std::size_t index = 0;
     const auto add_time = [&](double time) {
@@ -175,22 +178,21 @@ Result<std::vector<ParetoPoint>> MeasureCamera(const ParetoRequest& request, con
       seconds[index++].push_back(time);
     };
     for (const Setting& setting : settings) {
-      if (index % 20 == 0) {
-        Say(request, fmt::format("{}: round {} of {}, {} of {} settings", name, round + 1,
-                                 repetitions, index, settings.size()));
-      }
       if (round == 0) {
         const Result<ParetoPoint> point = MeasureSetting(scene, camera, setting, film);
         if (!point) return point.error();
         points.push_back(point.value());
         add_time(*point.value().seconds);
+        watch.Advance();
       } else {
         const Result<TimedFrame> timed = RenderTimed(scene, camera, setting);
         if (!timed) return timed.error();
         add_time(timed.value().seconds);
       }
+      watch.Advance();
     }
     if (!has_peer) continue;
+    watch.Clear();
     if (HasPovRay()) Say(request, fmt::format("{}: round {}, POV-Ray", name, round + 1));
     const auto peer = MeasurePovRay(scene, camera, base, film);
     if (!peer && peer.error().kind == ErrorKind::kInterrupted) return peer.error();

@@ -188,11 +188,13 @@ Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, cons
   const Result<TimedFrame> exact = RenderTimed(scene, camera, options);
   if (!exact) return exact.error();
   PlaceFrames frames(exact.value().film);
+  const std::vector<Place> places = ListPlaces(request);
+  StepWatch watch(
+      StyleOf(request), fmt::format("{}: places", Printable(camera.name)),
+      static_cast<std::size_t>(repetitions) * places.size() * std::size(kPlacePrecisions));
   // Round by round over all places, because a machine's clock drifts. The first has the errors.
   for (int round = 0; round < repetitions; ++round) {
-    Say(request,
-        fmt::format("{}: places, round {} of {}", Printable(camera.name), round + 1, repetitions));
-    for (const Place& place : ListPlaces(request)) {
+    for (const Place& place : places) {
       const Result<Scene> placed = Placed(scene, camera, place);
       if (!placed) return placed.error();
       const Camera& eye = placed.value().cameras[0];
@@ -200,6 +202,7 @@ Result<std::vector<PlacePoint>> MeasurePlaces(const ParetoRequest& request, cons
         options.precision = precision;
         const Result<TimedFrame> timed = RenderTimed(placed.value(), eye, options);
         if (!timed) return timed.error();
+        watch.Advance();
         frames.Add(place, PrecisionName(precision), timed.value().seconds, timed.value().film);
       }
       if (!has_peer) continue;

@@ -10,6 +10,7 @@
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
+#include "src/app/output_path.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
@@ -20,6 +21,7 @@ namespace {
 struct MergeRequest {
   std::vector<std::string> parts;
   std::string output;
+  std::string format;  // of --format; empty: by the path's ending
 };
 
 struct Part {
@@ -174,10 +176,15 @@ Values ValuesOf(const ReadPictureResult& picture) {
 void AddMergeOptions(CLI::App& app, MergeRequest& request) {
   AddInputs(app, "PART", request.parts, Presence::kNeeded, "Pictures that hold every pixel once");
   AddOutput(app, request.output, "PATH", "The whole, of the same format as the parts (needed)");
+  AddPictureFormat(app, request.format);
 }
 
-Status RunMerge(const MergeRequest& request) {
-  if (const Status known = CheckPicturePath(request.output); !known) return known;
+Status RunMerge(const MergeRequest& given) {
+  MergeRequest request = given;
+  if (request.output == "-") request.output = kStandardOutputPath;
+  const Status known = CheckPictureOutput(request.output, request.format);
+  if (!known) return known;
+  const std::string named = FormatPath(request.output, request.format);
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
   const Status apart = CheckOutputs({{"-o", request.output}}, request.parts);
   if (!apart) return apart;
@@ -190,7 +197,7 @@ Status RunMerge(const MergeRequest& request) {
   if (const Status placed = PlaceParts(parts); !placed) return placed;
   if (const Status sound = CheckParts(parts); !sound) return sound;
   const ReadPictureResult& first = parts.front().picture;
-  if (first.is_display == HoldsFloats(request.output)) {
+  if (first.is_display == HoldsFloats(named)) {
     return Usage(fmt::format("-o {}: the parts hold {}; sheaf convert changes that", request.output,
                              first.is_display ? "bytes" : "floats"));
   }
@@ -201,8 +208,9 @@ Status RunMerge(const MergeRequest& request) {
       WholePicture(whole.width, whole.height, first.is_srgb ? Transfer::kSrgb : Transfer::kLinear);
   spec.values = ValuesOf(first);
   spec.metadata = MetadataOf(parts);
-  if (HoldsLayers(request.output)) spec.layers = layers;
-  if (CheckPictureBits(request.output, first.bits)) spec.bits = first.bits;
+  spec.format = request.format;
+  if (HoldsLayers(named)) spec.layers = layers;
+  if (CheckPictureBits(named, first.bits)) spec.bits = first.bits;
   return WritePicture(whole, spec, request.output);
 }
 

@@ -52,7 +52,13 @@ void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
   AddParsed(app, "--scaled", request.scaled, "S[,S]", "factors from 1e-30 to 1e30, between commas",
             "The same where it is scaled by S",
             [](const std::string& text) { return ParseNumbers(text, 1e-30); });
+  AddChoice(app, "--progress", request.progress, {"auto", "plain", "none"},
+            "What stderr shows meanwhile");
   AddFlag(app, "-q,--quiet", request.quiet, "Only errors on stderr");
+}
+
+ProgressStyle StyleOf(const ParetoRequest& request) {
+  return ProgressStyleNamed(request.quiet ? "none" : request.progress);
 }
 
 void Say(const ParetoRequest& request, const std::string& line) {

@@ -9,6 +9,7 @@
 #include "src/app/choose.h"
 #include "src/app/open_scene.h"
 #include "src/app/parse_options.h"
+#include "src/app/progress.h"
 
 namespace CLI {
 class App;
@@ -31,10 +32,14 @@ struct ParetoRequest {
   std::optional<double> error, time;
   // Other places of the scene: moved by so much, or scaled by so much, each by itself.
   std::vector<double> moved, scaled;
+  std::string progress = "auto";
   bool quiet = false;
 };
 
 void AddParetoOptions(CLI::App& app, ParetoRequest& request);
+
+// What --progress and --quiet ask for.
+ProgressStyle StyleOf(const ParetoRequest& request);
 
 // A line for a person, unless --quiet.
 void Say(const ParetoRequest& request, const std::string& line);
