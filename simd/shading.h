@@ -33,8 +33,9 @@ template <typename Real>
 struct FinishData {
   // Indices into the frame's textures.
   std::uint32_t emission = kNoTexture, metallic_roughness = kNoTexture, occlusion = kNoTexture,
-                normals = kNoTexture;
-  Real metallic = 0, roughness = 0, occlusion_strength = 0, normal_scale = 0;
+                transmission = kNoTexture, normals = kNoTexture;
+  Real metallic = 0, roughness = 0, specular = 1;
+  Real occlusion_strength = 0, transmission_share = 0, normal_scale = 0;
   AlphaUse alpha = AlphaUse::kOpaque;
   Real alpha_factor = 1, alpha_cutoff = 0;
 };
@@ -72,8 +73,8 @@ template <typename Real>
 constexpr std::uint32_t NeedsOf(const FinishData<Real>& finish) {
   const bool is_glossy = finish.metallic_roughness != kNoTexture;
   const bool has_alpha = finish.alpha != AlphaUse::kOpaque;
-  const bool varies =
-      is_glossy || has_alpha || finish.emission != kNoTexture || finish.occlusion != kNoTexture;
+  const bool varies = is_glossy || has_alpha || finish.emission != kNoTexture ||
+                      finish.occlusion != kNoTexture || finish.transmission != kNoTexture;
   const bool is_bumpy = finish.normals != kNoTexture;
   return (varies ? kNeedsTerms | kNeedsCoordinates : 0) |
          (is_bumpy ? kNeedsNormals | kNeedsCoordinates : 0) |

@@ -124,12 +124,14 @@ struct SurfaceFields {
 template <typename Real, template <typename> class Field>
 struct TexelFields {
   Field<Real> r, g, b;  // of the base colour, or of a normal map
-  Field<Real> alpha, metallic, roughness, occlusion, emission_r, emission_g, emission_b;
+  Field<Real> alpha, metallic, roughness, occlusion, transmission;
+  Field<Real> emission_r, emission_g, emission_b;
 
   static constexpr auto kFields =
       std::make_tuple(&TexelFields::r, &TexelFields::g, &TexelFields::b, &TexelFields::alpha,
                       &TexelFields::metallic, &TexelFields::roughness, &TexelFields::occlusion,
-                      &TexelFields::emission_r, &TexelFields::emission_g, &TexelFields::emission_b);
+                      &TexelFields::transmission, &TexelFields::emission_r,
+                      &TexelFields::emission_g, &TexelFields::emission_b);
 };
 
 // Linear RGB, one an element.

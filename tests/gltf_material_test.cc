@@ -197,6 +197,14 @@ TEST_CASE("glTF metals mirror, and shine with nothing else") {
   CHECK(clear.kd == 0);
   CHECK(clear.ior == 1.25);
 
+  glass["KHR_materials_transmission"]["transmissionTexture"]["index"] = 0;
+  const Material painted = read(0.25, 0.5, glass);
+  REQUIRE(painted.transmission.has_value());
+  CHECK(painted.transmission->share == 0.75);
+  CHECK(painted.transmit == Colour(1, 0.5, 0.25) * 0.75);
+  CHECK(painted.kd == 1 - 0.25 * 0.5);
+  CHECK(painted.ambient == doctest::Approx(0.25 * (1 - 0.25 * 0.25)));
+
   json specular;
   specular["KHR_materials_specular"]["specularFactor"] = 0.5;
   CHECK(read(0, 0.5, json::object()).ks == 0.1);

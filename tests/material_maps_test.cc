@@ -117,6 +117,43 @@ TEST_CASE("metal and roughness are Whitted's terms at each point") {
   }
 }
 
+TEST_CASE("a highlight beside textures of metal has the strength that the material says") {
+  Material varied;
+  varied.kd = 0;
+  varied.metallic_roughness = {RowOf({Texel(0, 128, 0), Texel(0, 128, 255)}), 1, 1};
+  Scene scene = SheetScene(varied);
+  scene.lights = {{"", DirectionalLight{{0, 0, -1}}, Colour(1.0), 1.0}};
+  scene.settings.ambient = scene.settings.background = Colour(0.0);
+  const auto usual = RowIn(scene, 2);
+  scene.materials[0].metallic_roughness->specular = 3;
+  const auto strong = RowIn(scene, 2);
+  CheckColour(strong[0], usual[0] * 3.0);  // no metal
+  CHECK(strong[1] == usual[1]);
+}
+
+TEST_CASE("what a texture lets through is not there for light and ambient light, and is seen") {
+  Material pane;
+  pane.ambient = 0.5;
+  pane.transmit = {1, 0.5, 0};
+  pane.transmission = {RowOf({Texel(0, 0, 0), Texel(51, 255, 255), Texel(255, 0, 0)}), 0.5};
+  const glm::dvec3 sky(0.25, 0.5, 0.75), white(1.0);
+  const auto seen = RowIn(SheetScene(pane), 3);
+  const double red[] = {0, 0.2, 1};
+  for (std::size_t i = 0; i < 3; ++i) {
+    CheckColour(seen[i], white * (0.5 * (1 - 0.5 * red[i])) + pane.transmit * red[i] * sky);
+  }
+  // Light behind it goes on likewise.
+  Scene scene = SheetScene(pane);
+  Material floor;
+  floor.kd = 1;
+  scene.materials.push_back(floor);
+  scene.objects = {Sheet(3, 0), Sheet(0, 1)};
+  scene.cameras[0].eye = {0, 0, 1};
+  scene.lights = {{"sun", DirectionalLight{{0, 0, -1}}, Colour(1.0), 1.0}};
+  const auto lit = RowIn(scene, 3);
+  for (std::size_t i = 0; i < 3; ++i) CheckColour(lit[i], pane.transmit * red[i]);
+}
+
 // n . l of a normal that a texel (r, g, b) gives on the sheet.
 double Lambert(const glm::dvec3& texel, const glm::dvec3& to_light) {
   const glm::dvec3 n = 2.0 * (texel / 255.0) - 1.0;
@@ -281,6 +318,7 @@ TEST_CASE("materials that vary have the same bits on every target") {
       }
       if (random() % 2) material.metallic_roughness = {RandomTexture(random), 0.9, 0.8};
       if (random() % 2) material.occlusion = {RandomTexture(random), 0.7};
+      if (random() % 2) material.transmission = {RandomTexture(random), 0.8};
       if (random() % 2) material.normal_map = {RandomTexture(random), 0.6};
       const AlphaMode modes[] = {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend};
       material.alpha = {modes[random() % 3], Uniform(random, 0.3, 1), 0.4};
@@ -319,7 +357,9 @@ TEST_CASE("maps of materials are written and read back") {
   REQUIRE(WritePng({1, 1, {10, 20, 30}}, Transfer::kLinear, folder / "t.png").ok());
   const std::string text = R"({"materials": [{"name": "a", "emission": 2,
     "emission_texture": {"image": "t.png", "transform": {"offset": [0.25, 0], "rotation": 30}},
-    "metallic_roughness": {"texture": {"image": "t.png"}, "metallic": 0.25, "roughness": 0.5},
+    "metallic_roughness": {"texture": {"image": "t.png"}, "metallic": 0.25, "roughness": 0.5,
+                           "specular": 1.5},
+    "transmission": {"texture": {"image": "t.png"}, "share": 0.625},
     "occlusion": {"texture": {"image": "t.png"}, "strength": 0.75},
     "normal_map": {"texture": {"image": "t.png"}, "scale": -2},
     "alpha": {"mode": "mask", "factor": 0.5, "cutoff": 0.125}}],
@@ -335,6 +375,9 @@ TEST_CASE("maps of materials are written and read back") {
     CHECK(material.metallic_roughness->texture.transfer == Transfer::kLinear);
     CHECK(material.metallic_roughness->metallic == 0.25);
     CHECK(material.metallic_roughness->roughness == 0.5);
+    CHECK(material.metallic_roughness->specular == 1.5);
+    REQUIRE(material.transmission.has_value());
+    CHECK(material.transmission->share == 0.625);
     REQUIRE(material.occlusion.has_value());
     CHECK(material.occlusion->strength == 0.75);
     REQUIRE(material.normal_map.has_value());

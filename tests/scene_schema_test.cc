@@ -151,8 +151,9 @@ json CompleteScene() {
        "transform": {"offset": [0.5, 0], "scale": [2, 2], "rotation": 45}}},
        "emission": 1, "emission_texture": {"image": "schema-texture.png"},
        "metallic_roughness": {"texture": {"image": "schema-texture.png"}, "metallic": 0.5,
-                              "roughness": 0.25},
+                              "roughness": 0.25, "specular": 2},
        "occlusion": {"texture": {"image": "schema-texture.png"}, "strength": 0.5},
+       "transmission": {"texture": {"image": "schema-texture.png"}, "share": 0.5},
        "normal_map": {"texture": {"image": "schema-texture.png"}, "scale": 2},
        "alpha": {"mode": "blend", "factor": 0.5, "cutoff": 0.25}}],
     "objects": [

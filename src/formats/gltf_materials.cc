@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/formats/read_scene.h"
+#include "src/scene/gloss.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -19,11 +20,11 @@ struct GltfMaterials::Surface {
   double metallic = 1, roughness = 1;
   double specular = 1;      // the highlight of what is no metal, over that of an index of 1.5
   double transmission = 0;  // of what is no metal
-  GltfTextureUse base_texture, gloss_texture;
+  GltfTextureUse base_texture, gloss_texture, transmission_texture;
 };
 
 struct GltfMaterials::Uses {
-  GltfTextureUse base, emissive, normal, gloss, occlusion;
+  GltfTextureUse base, emissive, normal, gloss, occlusion, transmission;
 };
 
 namespace {
@@ -35,16 +36,12 @@ double Largest(const Colour& colour) { return std::max({colour.x, colour.y, colo
 // none on top of its mirror.
 void SetGloss(double metallic, double roughness, double specular, Material* material,
               const Colour& base) {
-  const double smooth = 1 - roughness;
-  const double mirror = metallic * (smooth * smooth);
-  const double dielectric = 0.2 * (1 - metallic);
-  material->kd *= 1 - metallic * smooth;
-  material->ks = (0.2 + 0.6 * metallic + dielectric * (specular - 1)) * smooth;
-  // Blinn and Phong's exponent for the roughness of a microfacet surface (Walter et al. 2007).
-  const double alpha = std::max(roughness * roughness, 0.01);
-  material->shininess = std::max(2 / (alpha * alpha) - 2, 1.0);
-  material->ambient *= 1 - mirror;
-  if (mirror > 0.02) material->reflect = glm::min(base, Colour(1.0)) * mirror;
+  const Gloss<double> gloss = GlossOf(metallic, roughness, specular);
+  material->kd *= gloss.kd;
+  material->ks = gloss.ks;
+  material->shininess = gloss.shininess;
+  material->ambient *= gloss.ambient;
+  material->reflect = glm::min(base, Colour(1.0)) * gloss.mirror;
 }
 
 // Seen as it is, whatever lights there are.
@@ -105,11 +102,11 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   const std::string place = fmt::format("/materials/{}", index);
   const Surface surface = ReadSurface(from);
   const auto info = [](const auto& i) { return TextureUse(i.index, i.texCoord, i.extensions); };
-  Uses uses{surface.base_texture, info(from.emissiveTexture), info(from.normalTexture),
-            surface.gloss_texture, info(from.occlusionTexture)};
+  Uses uses{surface.base_texture,  info(from.emissiveTexture),  info(from.normalTexture),
+            surface.gloss_texture, info(from.occlusionTexture), surface.transmission_texture};
   const auto& extensions = from.extensions;
   const bool is_unlit = FindExtension(extensions, "KHR_materials_unlit") != nullptr;
-  if (is_unlit) uses = {surface.base_texture, {}, {}, {}, {}};
+  if (is_unlit) uses = {surface.base_texture, {}, {}, {}, {}, {}};
   uses_.push_back({ChooseSet(uses, place), is_unlit, from.alphaMode != "OPAQUE"});
 
   Material material;
@@ -146,8 +143,9 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
     const bool is_even = !material.metallic_roughness;
     const double metallic = is_even ? surface.metallic : 0;
     const double through = surface.transmission * (1 - metallic);
-    material.kd = 1 - through;
-    material.ambient = kModelAmbient * (1 - through);
+    const double taken = material.transmission ? 0 : through;
+    material.kd = 1 - taken;
+    material.ambient = kModelAmbient * (1 - taken);
     material.transmit = through * glm::min(surface.base, Colour(1.0));
     SetGloss(metallic, surface.roughness, surface.specular, &material, surface.base);
   }
@@ -182,8 +180,8 @@ GltfMaterials::Surface GltfMaterials::ReadSurface(const tinygltf::Material& from
   }
   if (const auto* through = FindExtension(from.extensions, "KHR_materials_transmission")) {
     surface.transmission = Share(NumberIn(*through, "transmissionFactor", 0));
-    if (TextureUseIn(*through, "transmissionTexture").index >= 0) {
-      document_.Warn("/materials", "textures of transmission are not read");
+    if (surface.transmission > 0) {
+      surface.transmission_texture = TextureUseIn(*through, "transmissionTexture");
     }
   }
   return surface;
@@ -221,8 +219,8 @@ GltfMaterials::Surface GltfMaterials::ReadSpecularGlossiness(const tinygltf::Val
 // Surfaces have one set of coordinates: that of the first texture. Those by another are left out.
 int GltfMaterials::ChooseSet(Uses& uses, const std::string& place) {
   int chosen = -1;
-  for (GltfTextureUse* use :
-       {&uses.base, &uses.emissive, &uses.normal, &uses.gloss, &uses.occlusion}) {
+  for (GltfTextureUse* use : {&uses.base, &uses.emissive, &uses.normal, &uses.gloss,
+                              &uses.occlusion, &uses.transmission}) {
     if (use->index < 0) continue;
     if (chosen < 0) chosen = use->set;
     if (use->set == chosen) continue;
@@ -244,7 +242,12 @@ void GltfMaterials::SetTextures(const tinygltf::Material& from, const Surface& s
   }
   if (auto gloss = textures_.Read(uses.gloss, Transfer::kLinear)) {
     material->metallic_roughness =
-        MetallicRoughness{*std::move(gloss), surface.metallic, surface.roughness};
+        MetallicRoughness{*std::move(gloss), surface.metallic, surface.roughness, surface.specular};
+  }
+  if (auto through = textures_.Read(uses.transmission, Transfer::kLinear)) {
+    const double metallic = material->metallic_roughness ? 0 : surface.metallic;
+    material->transmission =
+        Transmission{*std::move(through), surface.transmission * (1 - metallic)};
   }
   if (auto occlusion = textures_.Read(uses.occlusion, Transfer::kLinear)) {
     material->occlusion = Occlusion{*std::move(occlusion), Share(from.occlusionTexture.strength)};

@@ -198,7 +198,11 @@ void ReadMaps(JsonObject& object, ColourSource* source, Material* material) {
           [](JsonObject& rest, MetallicRoughness& map) {
             rest.Optional("metallic").Read(kUnit, &map.metallic);
             rest.Optional("roughness").Read(kUnit, &map.roughness);
+            rest.Optional("specular").Read(kStrength, &map.specular);
           });
+  ReadMap(
+      object.Optional("transmission"), source, &material->transmission,
+      [](JsonObject& rest, Transmission& map) { rest.Optional("share").Read(kUnit, &map.share); });
   ReadMap(object.Optional("occlusion"), source, &material->occlusion,
           [](JsonObject& rest, Occlusion& map) {
             rest.Optional("strength").Read(kUnit, &map.strength);
@@ -236,7 +240,11 @@ void WriteMaps(const Material& material, Json* json) {
   if (const auto& map = material.metallic_roughness) {
     (*json)["metallic_roughness"] = {{"texture", TextureJson(map->texture)},
                                      {"metallic", map->metallic},
-                                     {"roughness", map->roughness}};
+                                     {"roughness", map->roughness},
+                                     {"specular", map->specular}};
+  }
+  if (const auto& map = material.transmission) {
+    (*json)["transmission"] = {{"texture", TextureJson(map->texture)}, {"share", map->share}};
   }
   if (const auto& map = material.occlusion) {
     (*json)["occlusion"] = {{"texture", TextureJson(map->texture)}, {"strength", map->strength}};

@@ -151,10 +151,15 @@ void CompileFinish(const Material& material, CompiledScene<Real>& compiled,
     finish.metallic_roughness = CompileTexture(gloss->texture, compiled);
     finish.metallic = static_cast<Real>(gloss->metallic);
     finish.roughness = static_cast<Real>(gloss->roughness);
+    finish.specular = static_cast<Real>(gloss->specular);
   }
   if (const auto& occlusion = material.occlusion) {
     finish.occlusion = CompileTexture(occlusion->texture, compiled);
     finish.occlusion_strength = static_cast<Real>(occlusion->strength);
+  }
+  if (const auto& transmission = material.transmission) {
+    finish.transmission = CompileTexture(transmission->texture, compiled);
+    finish.transmission_share = static_cast<Real>(transmission->share);
   }
   if (const auto& normals = material.normal_map) {
     finish.normals = CompileTexture(normals->texture, compiled);
@@ -307,7 +312,8 @@ void AddFootprintNeeds(CompiledScene<Real>& compiled) {
     };
     if ((material.kind == BaseColour::kTexture && has_levels(material.texture)) ||
         has_levels(finish.emission) || has_levels(finish.metallic_roughness) ||
-        has_levels(finish.occlusion) || has_levels(finish.normals)) {
+        has_levels(finish.occlusion) || has_levels(finish.transmission) ||
+        has_levels(finish.normals)) {
       material.needs |= kNeedsFootprint | kNeedsWidth;
     }
     has_cones = has_cones || (material.needs & kNeedsFootprint) != 0;

@@ -51,6 +51,7 @@ void SampleTextures(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
   };
   sample(finish.metallic_roughness, {nullptr, texels.roughness, texels.metallic, nullptr});
   sample(finish.occlusion, {texels.occlusion, nullptr, nullptr, nullptr});
+  sample(finish.transmission, {texels.transmission, nullptr, nullptr, nullptr});
   sample(finish.emission, {texels.emission_r, texels.emission_g, texels.emission_b, nullptr});
   if (finish.alpha == AlphaUse::kOpaque) return;
   if (material.kind == BaseColour::kTexture) {
@@ -75,6 +76,7 @@ void FinishSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
         texels.metallic[i],
         texels.roughness[i],
         texels.occlusion[i],
+        texels.transmission[i],
         {texels.emission_r[i], texels.emission_g[i], texels.emission_b[i]},
         texels.alpha[i]};
     const scalar::Surface<Real> surface = SurfaceIn(surfaces, i, material.needs);

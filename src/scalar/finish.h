@@ -11,6 +11,7 @@
 #include "src/scalar/shade.h"
 #include "src/scalar/surface.h"
 #include "src/scalar/triangle.h"
+#include "src/scene/gloss.h"
 
 namespace sheaf::scalar {
 
@@ -18,7 +19,7 @@ namespace sheaf::scalar {
 template <typename Real>
 struct Texels {
   Real metallic, roughness;  // before their factors
-  Real occlusion;
+  Real occlusion, transmission;
   Vec3<Real> emission;
   Real alpha;
 };
@@ -42,7 +43,12 @@ Texels<Real> TexelsAt(const MaterialData<Real>& material,
   const Vec3<Real> gloss = sample(finish.metallic_roughness);
   const Real alpha =
       finish.alpha == AlphaUse::kOpaque ? 1 : TexelAlphaAt(material, textures, surface);
-  return {gloss.z, gloss.y, sample(finish.occlusion).x, sample(finish.emission), alpha};
+  return {gloss.z,
+          gloss.y,
+          sample(finish.occlusion).x,
+          sample(finish.transmission).x,
+          sample(finish.emission),
+          alpha};
 }
 
 // How much of the surface is there, in [0, 1], where its texture's alpha is `alpha`.
@@ -63,26 +69,13 @@ Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureD
     const Vec3<Real> gloss = SampleTexture(textures[finish.metallic_roughness], surface);
     passes = passes * (1 - finish.metallic * gloss.z);
   }
+  if (finish.transmission != kNoTexture) {
+    passes = passes * SampleTexture(textures[finish.transmission], surface).x;
+  }
   if (finish.alpha == AlphaUse::kOpaque) return passes;
   const Real alpha = ShareThere(finish, TexelAlphaAt(material, textures, surface));
   const Real gap = 1 - alpha;
   return passes * alpha + Vec3<Real>{gap, gap, gap};
-}
-
-// glTF's metal and roughness in Whitted's terms: docs/formats.md, "glTF".
-template <typename Real>
-void ApplyGloss(Real metallic, Real roughness, Vec3<Real> base, MaterialData<Real>& point) {
-  const Real smooth = 1 - roughness;
-  const Real mirror = metallic * (smooth * smooth);
-  point.kd = point.kd * (1 - metallic * smooth);
-  point.ks = (Real(0.2) + Real(0.6) * metallic) * smooth;
-  const Real squared = std::max(roughness * roughness, Real(0.01));
-  point.shininess = std::max(2 / (squared * squared) - 2, Real(1));
-  for (int i = 0; i < 3; ++i) {
-    point.ambient[i] = point.ambient[i] * (1 - mirror);
-    point.reflect[i] = mirror > Real(0.02) ? std::min(base[i], Real(1)) * mirror : Real(0);
-    point.transmit[i] = point.transmit[i] * (1 - metallic);
-  }
 }
 
 // The material as it is at one point, where its base colour is `base`. Only the terms that
@@ -93,7 +86,29 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<R
   const FinishData<Real>& finish = material.finish;
   MaterialData<Real> point = material;
   if (finish.metallic_roughness != kNoTexture) {
-    ApplyGloss(finish.metallic * texels.metallic, finish.roughness * texels.roughness, base, point);
+    const Real metallic = finish.metallic * texels.metallic;
+    const Gloss<Real> gloss =
+        GlossOf(metallic, finish.roughness * texels.roughness, finish.specular);
+    point.kd = point.kd * gloss.kd;
+    point.ks = gloss.ks;
+    point.shininess = gloss.shininess;
+    for (int i = 0; i < 3; ++i) {
+      point.ambient[i] = point.ambient[i] * gloss.ambient;
+      point.reflect[i] = std::min(base[i], Real(1)) * gloss.mirror;
+      point.transmit[i] = point.transmit[i] * (1 - metallic);
+    }
+  }
+  if (finish.transmission != kNoTexture) {
+    const Real through = texels.transmission;
+    // Metal lets nothing through.
+    const Real metal =
+        finish.metallic_roughness == kNoTexture ? Real(0) : finish.metallic * texels.metallic;
+    const Real kept = 1 - (finish.transmission_share * through) * (1 - metal);
+    point.kd = point.kd * kept;
+    for (int i = 0; i < 3; ++i) {
+      point.ambient[i] = point.ambient[i] * kept;
+      point.transmit[i] = point.transmit[i] * through;
+    }
   }
   if (finish.occlusion != kNoTexture) {
     const Real share = 1 + finish.occlusion_strength * (texels.occlusion - 1);

@@ -16,6 +16,7 @@ void ForEachTexture(M& material, F f) {
   if (material.emission_texture) f("emission_texture", *material.emission_texture);
   if (material.metallic_roughness) f("metallic_roughness", material.metallic_roughness->texture);
   if (material.occlusion) f("occlusion", material.occlusion->texture);
+  if (material.transmission) f("transmission", material.transmission->texture);
   if (material.normal_map) f("normal_map", material.normal_map->texture);
 }
 

@@ -135,7 +135,10 @@ void Check(const Material& material, FirstFault& fault) {
   if (const auto& gloss = material.metallic_roughness) {
     fault.Number("metallic_roughness.metallic", gloss->metallic, kShare);
     fault.Number("metallic_roughness.roughness", gloss->roughness, kShare);
+    fault.Number("metallic_roughness.specular", gloss->specular, kAtLeastZero);
   }
+  if (const auto& map = material.transmission)
+    fault.Number("transmission.share", map->share, kShare);
   if (material.occlusion) fault.Number("occlusion.strength", material.occlusion->strength, kShare);
   if (material.normal_map) fault.Number("normal_map.scale", material.normal_map->scale, kAny);
   fault.Number("alpha.factor", material.alpha.factor, kShare);

@@ -84,6 +84,14 @@ struct Texture {
 struct MetallicRoughness {
   Texture texture;                         // its factor counts for nothing
   double metallic = 1.0, roughness = 1.0;  // [0, 1]
+  double specular = 1.0;  // >= 0: the highlight of what is no metal, over that of an index of 1.5
+};
+
+// How much light goes through, point by point: `transmit` is multiplied by the texture's red, and
+// red times `share` is taken off `kd` and `ambient`.
+struct Transmission {
+  Texture texture;     // its factor counts for nothing
+  double share = 1.0;  // [0, 1]
 };
 
 // The share of the ambient light that reaches a point: 1 + strength * (the texture's red - 1).
@@ -130,6 +138,7 @@ struct Material {
   std::optional<Texture> emission_texture = std::nullopt;  // times `emission`
   std::optional<MetallicRoughness> metallic_roughness = std::nullopt;
   std::optional<Occlusion> occlusion = std::nullopt;
+  std::optional<Transmission> transmission = std::nullopt;
   std::optional<NormalMap> normal_map = std::nullopt;
   Alpha alpha = {};
 };
