@@ -141,7 +141,8 @@ json CompleteScene() {
                  "shadows": "opaque",
                  "environment": {"gradient": {"zenith": 1, "horizon": [1, 1, 0.5], "nadir": 0}}},
     "materials": [
-      {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3]}},
+      {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3],
+                                                    "filter": true}},
        "ambient": 0.1, "kd": 0.5, "ks": 0.5, "shininess": 10, "reflect": 0.5,
        "transmit": [0.1, 0.2, 0.3], "ior": 1.5, "attenuation": [0.5, 1, 1],
        "attenuation_distance": 2},

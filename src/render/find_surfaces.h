@@ -40,6 +40,7 @@ template <typename Real>
 constexpr std::uint64_t TexelFieldsFor(std::uint32_t needs) {
   using Fields = TexelView<Real>;
   if (needs & kNeedsTerms) return ~std::uint64_t{0};
+  if (!(needs & (kNeedsTint | kNeedsNormals))) return 0;
   return FieldBit(&Fields::r) | FieldBit(&Fields::g) | FieldBit(&Fields::b);
 }
 

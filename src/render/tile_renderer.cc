@@ -121,7 +121,7 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& 
     const MaterialData<Real>& material = frame_.materials[bin.material];
     const std::uint32_t count = bin.batch.count;
     surfaces_.Reserve(batch.count, surface_fields_);
-    if (!frame_.textures.empty()) texels_.Reserve(batch.count, texel_fields_);
+    texels_.Reserve(batch.count, texel_fields_);
     const SurfaceView<Real> surfaces =
         FindSurfaces(frame_, kernels_, bin, batch, hits_.view(), surfaces_, texels_.output());
     if (recorder) recorder->Record(bin, hits_.view(), surfaces);
