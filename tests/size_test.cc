@@ -29,6 +29,7 @@ const Exception kExceptions[] = {
     // Kernels of one piece: their vectors would have to be handed over one by one to be split.
     {"simd/spawn_rays.cc", "SpawnRaysLanes"},
     {"simd/sphere_surface.cc", "FetchHits"},
+    {"simd/find_footprints.cc", "ExtentAlong"},
     {"simd/triangle_surface.cc", "TriangleSurfacesLanes"},
     {"simd/frustum-inl.h", "PrepareFrustum"},
 };

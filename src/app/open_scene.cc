@@ -135,8 +135,9 @@ Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOp
   Result<ReadSceneResult> result = ReadScene(path, ReadOptionsOf(options));
   if (!result) return result.error();
   ReadSceneResult& read = result.value();
-  OpenedScene opened{std::move(read.scene), std::move(read.warnings), std::move(read.files),
-                     read.duration,         read.key_light,           {},
+  OpenedScene opened{std::move(read.scene), std::move(read.warnings),
+                     std::move(read.files), read.duration,
+                     read.key_light,        {},
                      std::nullopt,          std::nullopt};
   Scene& scene = opened.scene;
   opened.cameras = scene.cameras;

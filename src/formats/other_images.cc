@@ -84,8 +84,7 @@ DecodeByModule* LoadModule(std::string* complaint) {
       return reinterpret_cast<DecodeByModule*>(found);
     }
   }
-  const char* const said = dlerror();
-  *complaint = said != nullptr ? said : "no such function";
+  *complaint = "libsheaf_openimageio.so cannot be loaded";
 #else
   *complaint = "this build has none";
 #endif
@@ -97,7 +96,7 @@ Result<Pixels> Decode(std::string_view bytes, const Kind& kind) {
   static DecodeByModule* const decode = LoadModule(&complaint);
   if (decode == nullptr) {
     return Refused(fmt::format("{}, neither a PNG nor a JPEG, which OpenImageIO would read: {}",
-                               kind.name, Printable(complaint)));
+                               kind.name, complaint));
   }
   ModuleImage image;
   if (!decode(bytes.data(), bytes.size(), kind.ending, kMaxTextureSide, image)) {

@@ -35,12 +35,13 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
          (needs & kNeedsFootprint ? footprints : 0);
 }
 
-// The fields of texels that these materials look up, likewise.
+// The fields of texels that these materials look up in so many textures, likewise.
 template <typename Real>
-constexpr std::uint64_t TexelFieldsFor(std::uint32_t needs) {
+constexpr std::uint64_t TexelFieldsFor(std::uint32_t needs, std::size_t textures) {
   using Fields = TexelView<Real>;
+  // Materials vary without textures too, where they are partly there.
   if (needs & kNeedsTerms) return ~std::uint64_t{0};
-  if (!(needs & (kNeedsTint | kNeedsNormals))) return 0;
+  if (textures == 0) return 0;
   return FieldBit(&Fields::r) | FieldBit(&Fields::g) | FieldBit(&Fields::b);
 }
 

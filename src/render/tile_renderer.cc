@@ -226,7 +226,7 @@ TileRenderer<Real>::TileRenderer(const FrameView<Real>& frame, const Kernels<Rea
       kernels_(kernels),
       stop_(stop),
       surface_fields_(SurfaceFieldsFor<Real>(NeedsOfAny(frame.materials))),
-      texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame.materials))),
+      texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame.materials), frame.textures.size())),
       path_fields_(PathFieldsFor<Real>(NeedsOfAny(frame.materials))),
       binner_(frame.materials.size()),
       lights_(frame, kernels_, rays_, clock_),
