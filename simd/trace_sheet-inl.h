@@ -80,8 +80,10 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
   if (unfit != 0) return false;
 
   beam.octant = first.octant[one];
+  Real of_packets = 0, of_sheet = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const bool backward = beam.octant >> axis & 1;
+    Real lowest_of_all = kDefaultTMax<Real>, highest_of_all = -lowest_of_all;
     const Real scale = first.scale[axis][one];
     Real furthest = backward ? kDefaultTMax<Real> : -kDefaultTMax<Real>, rearmost = -furthest;
     for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
@@ -101,6 +103,10 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
       };
       beam.enter[axis][k] = lowest(hn::Load(d, packet.enter[axis]));
       beam.leave[axis][k] = highest(hn::Load(d, packet.leave[axis]));
+      const Real low = lowest(origin), high = highest(origin);
+      of_packets += high - low;
+      lowest_of_all = std::min(lowest_of_all, low);
+      highest_of_all = std::max(highest_of_all, high);
       const auto ahead = hn::Add(origin, hn::Load(d, packet.slack[axis]));
       const auto behind = hn::Sub(origin, hn::Load(d, packet.slack[axis]));
       furthest = backward ? std::min(furthest, lowest(ahead)) : std::max(furthest, highest(ahead));
@@ -110,7 +116,10 @@ HWY_INLINE bool PrepareSheet(const TreeView<Real>& tree, Sheet<Real>& sheet) {
     beam.all_enter[axis] = furthest;
     beam.all_leave[axis] = rearmost;
     beam.all_enter_scale[axis] = beam.all_leave_scale[axis] = scale;
+    of_sheet += highest_of_all - lowest_of_all;
   }
+  // A packet whose rays start all over the sheet would meet as many boxes as the sheet does.
+  if (2 * of_packets > of_sheet * static_cast<Real>(sheet.count)) return false;
   for (std::uint32_t k = 0; k < LaneCount(d); ++k) {
     beam.t_min[k] = 0;
     beam.t_last[k] = k < sheet.count ? LastT(sheet.packets[k]) : kDone<Real>;

@@ -118,9 +118,10 @@ void GiantsAndOddRays(Report& report) {
   Shapes under_sky = hills;
   under_sky.AddSphere({0, 0, 0}, 1e12f);
   const std::vector<Ray> plain = RaysFromAbove(kSide, 2000);
-  std::vector<Ray> behind = plain, tiny = plain;
+  std::vector<Ray> behind = plain, tiny = plain, parallel = plain;
   for (Ray& ray : behind) ray.t_min = -1e-4f;
   for (Ray& ray : tiny) ray.direction = ray.direction * 1e-21f;
+  for (Ray& ray : parallel) ray.direction = {0, -1, 0};
   const auto build = [](const Shapes& shapes) { return Geometry::Build(InputOf(shapes)); };
   const Result<Geometry> open = build(hills), closed = build(under_sky);
   report.Expect(open.ok() && closed.ok(), "no geometry");
@@ -135,7 +136,9 @@ void GiantsAndOddRays(Report& report) {
   expect_fast("t_min < 0", open.value(), behind);
   expect_fast("directions of 1e-21", open.value(), tiny);
   expect_fast("a sky of 1e12", closed.value(), plain);
-  for (const std::vector<Ray>& rays : {plain, behind, tiny}) {
+  expect_fast("parallel rays from anywhere", open.value(), parallel);
+  expect_fast("parallel rays under the sky", closed.value(), parallel);
+  for (const std::vector<Ray>& rays : {plain, behind, tiny, parallel}) {
     const std::vector<Ray> few(rays.begin(), rays.begin() + 100);
     for (const Hit& hit : TraceEverywhere(report, under_sky, few)) {
       report.Expect(IsHit(hit), "a miss under the sky");
