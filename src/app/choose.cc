@@ -133,6 +133,19 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
   return options;
 }
 
+RenderOptions SmallPicture(const RenderOptions& options, int side) {
+  RenderOptions small = options;
+  const int longer = std::max({options.width, options.height, side});
+  small.width = std::max(1, options.width * side / longer);
+  small.height = std::max(1, options.height * side / longer);
+  small.crop.reset();
+  small.samples = 1;
+  small.contrast.reset();
+  small.timing = Timing::kOff;
+  small.layers = {};
+  return small;
+}
+
 Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names) {
   const std::vector<std::string> usable = UsableTargets();
   std::vector<std::string> every = {"scalar"};

@@ -39,6 +39,10 @@ Precision PrecisionOf(const std::string& name);
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
                            const std::optional<int>& samples);
 
+// The options for a picture of the same proportions, at most `side` pixels each way, with one
+// sample a pixel.
+RenderOptions SmallPicture(const RenderOptions& options, int side);
+
 // The targets that words of --targets name, where "all" stands for scalar and every usable one,
 // "auto" for the best. kUsage where one does not run here, or is there twice.
 Result<std::vector<std::string>> ExpandTargets(const std::vector<std::string>& names);

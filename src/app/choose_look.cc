@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <memory>
-
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
@@ -31,17 +28,27 @@ void AddLookOptions(CLI::App& app, LookOptions& look) {
   AddChoice(app, "--tone", look.tone, {"linear", "filmic"}, "Curve; filmic rolls off highlights");
 }
 
+const char* GivenLookOption(const LookOptions& look) {
+  if (look.exposure) return "--exposure";
+  return look.tone.empty() ? nullptr : "--tone";
+}
+
 Status CheckLook(const LookOptions& look, const std::string& named) {
-  if ((!look.exposure && look.tone.empty()) || !HoldsFloats(named)) return Done{};
-  return Usage(fmt::format("{}: for pictures of bytes, and {} holds light as it is",
-                           look.exposure ? "--exposure" : "--tone", PrintablePath(named)));
+  const char* option = GivenLookOption(look);
+  if (option == nullptr || !HoldsFloats(named)) return Done{};
+  return Usage(fmt::format("{}: for pictures of bytes, and {} holds light as it is", option,
+                           PrintablePath(named)));
+}
+
+Tone ToneOf(const LookOptions& given, Tone otherwise) {
+  if (given.tone.empty()) return otherwise;
+  return given.tone == "filmic" ? Tone::kFilmic : Tone::kLinear;
 }
 
 Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
                         const RenderOptions& options) {
   Look look;
-  look.tone = scene.settings.tone;
-  if (!given.tone.empty()) look.tone = given.tone == "filmic" ? Tone::kFilmic : Tone::kLinear;
+  look.tone = ToneOf(given, scene.settings.tone);
   const Exposure exposure = given.exposure.value_or(Exposure{scene.settings.ev});
   if (exposure.ev) {
     look.ev = *exposure.ev;
@@ -51,19 +58,6 @@ Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Came
   if (!small) return small.error();
   look.ev = MeterExposure(small.value());
   return look;
-}
-
-RenderOptions SmallPicture(const RenderOptions& options, int side) {
-  RenderOptions small = options;
-  const int longer = std::max({options.width, options.height, side});
-  small.width = std::max(1, options.width * side / longer);
-  small.height = std::max(1, options.height * side / longer);
-  small.crop.reset();
-  small.samples = 1;
-  small.contrast.reset();
-  small.timing = Timing::kOff;
-  small.layers = {};
-  return small;
 }
 
 }  // namespace sheaf

@@ -28,6 +28,9 @@ struct LookOptions {
 
 void AddLookOptions(CLI::App& app, LookOptions& look);
 
+// The name of one of these options that the command line has; null where it has none.
+const char* GivenLookOption(const LookOptions& look);
+
 // The option that was given for a picture of this path, which holds light as it is: kUsage.
 Status CheckLook(const LookOptions& look, const std::string& named);
 
@@ -37,13 +40,12 @@ struct Look {
   Tone tone = Tone::kLinear;
 };
 
+// What --tone names, or `otherwise`.
+Tone ToneOf(const LookOptions& given, Tone otherwise);
+
 // Where the exposure is metered, it renders a small picture.
 Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
                         const RenderOptions& options);
-
-// The options for a picture of the same proportions, at most `side` pixels each way, with one
-// sample a pixel.
-RenderOptions SmallPicture(const RenderOptions& options, int side);
 
 }  // namespace sheaf
 

@@ -39,8 +39,7 @@ const char* GivenPictureOption(const ConvertRequest& request) {
   if (request.bits) return "--bits";
   if (!request.format.empty()) return "--format";
   if (!request.transfer.empty()) return "--transfer";
-  if (request.look.exposure) return "--exposure";
-  return request.look.tone.empty() ? nullptr : "--tone";
+  return GivenLookOption(request.look);
 }
 
 // ---- Scenes ----
@@ -203,7 +202,7 @@ Status ConvertPicture(const ConvertRequest& request) {
   const bool keeps_bits = is_same_kind && CheckPictureBits(named, picture.bits).ok();
   spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
   if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
-  const bool is_developed = request.look.exposure || !request.look.tone.empty();
+  const bool is_developed = GivenLookOption(request.look) != nullptr;
   if (keeps && picture.is_display && !HoldsFloats(named) && !is_developed) {
     // A .png that says nothing of its transfer makes one that says nothing.
     const bool is_known = picture.is_srgb || picture.is_linear;
@@ -212,7 +211,7 @@ Status ConvertPicture(const ConvertRequest& request) {
     DecodeLight(picture);
   }
   if (request.look.exposure) spec.ev = request.look.exposure->ev.value_or(MeterExposure(film));
-  if (request.look.tone == "filmic") spec.tone = Tone::kFilmic;
+  spec.tone = ToneOf(request.look, Tone::kLinear);
   if (HoldsLayers(named)) spec.layers = film.held_layers();
   return WritePicture(film, spec, request.output);
 }

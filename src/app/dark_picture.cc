@@ -9,7 +9,7 @@
 #include <optional>
 #include <variant>
 
-#include "src/app/choose_look.h"
+#include "src/app/choose.h"
 #include "src/formats/printable.h"
 #include "src/scene/bounds.h"
 #include "src/scene/develop.h"

@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "sheaf/formats.h"
+#include "src/app/band_journal.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/formats/printable.h"
@@ -56,7 +57,7 @@ std::string SequenceJournalPath(const std::string& output) {
   const std::string folder = FixedFolder(output);
   std::string name = output.substr(folder.size());
   std::replace(name.begin(), name.end(), '/', '_');
-  return fmt::format("{}.{}.sheaf-journal", folder, name);
+  return JournalPath(folder + name);
 }
 
 Result<std::string> ExpandPath(const std::string& output, const std::string& camera,

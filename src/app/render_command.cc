@@ -125,10 +125,7 @@ Result<Earlier> FindEarlier(const RenderRequest& request, const RenderOptions& o
   const std::string path = SequenceJournalPath(request.output);
   Result<SequenceJournal> sequence = SequenceJournal::Open(path, *earlier.identity);
   if (!sequence) return sequence.error();
-  if (sequence.value().was_other() && !request.quiet) {
-    PrintMessage(fmt::format("sheaf: warning: {}: of another scene, or other options; begun anew",
-                             PrintablePath(path)));
-  }
+  if (sequence.value().was_other()) WarnOfOtherWork(request, path);
   earlier.sequence = std::move(sequence).value();
   return earlier;
 }

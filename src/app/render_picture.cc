@@ -43,10 +43,7 @@ Result<std::optional<BandJournal>> OpenJournal(const RenderRequest& request, con
   const std::string path = JournalPath(frame.path);
   Result<BandJournal> opened = BandJournal::Open(path, IdentityOf(*identity, frame));
   if (!opened) return opened.error();
-  if (opened.value().was_other() && !request.quiet) {
-    PrintMessage(fmt::format("sheaf: warning: {}: of another scene, or other options; begun anew",
-                             PrintablePath(path)));
-  }
+  if (opened.value().was_other()) WarnOfOtherWork(request, path);
   journal.emplace(std::move(opened).value());
   return journal;
 }
@@ -67,6 +64,12 @@ Result<int> Restore(const PixelRect& area, Layers layers, const RowSink& write,
 }
 
 }  // namespace
+
+void WarnOfOtherWork(const RenderRequest& request, const std::string& journal) {
+  if (request.quiet) return;
+  PrintMessage(fmt::format("sheaf: warning: {}: of another scene, or other options; begun anew",
+                           PrintablePath(journal)));
+}
 
 Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
                                   const RenderOptions& options, ProgressStyle style,

@@ -22,6 +22,9 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
                                   const RenderOptions& options, ProgressStyle style,
                                   const std::string& label, std::optional<std::uint64_t> identity);
 
+// Says, unless the run is quiet, that this journal is of other work and is not gone on with.
+void WarnOfOtherWork(const RenderRequest& request, const std::string& journal);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_APP_RENDER_PICTURE_H_

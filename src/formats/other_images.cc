@@ -59,6 +59,7 @@ Error Refused(std::string_view what) { return {ErrorKind::kScene, std::string(wh
 struct Pixels {
   int width = 0, height = 0;
   std::vector<float> rgba;
+  bool is_light = false;  // else encoded as sRGB
 };
 
 // Grey fills three channels, and where there is no alpha it is 1.
@@ -91,18 +92,20 @@ DecodeByModule* LoadModule(std::string* complaint) {
   return nullptr;
 }
 
-Result<Pixels> Decode(std::string_view bytes, const Kind& kind) {
+Result<Pixels> Decode(std::string_view bytes) {
+  const Kind* kind = KindOf(bytes);
+  if (kind == nullptr) return Refused("of an unknown format");
   static std::string complaint;
   static DecodeByModule* const decode = LoadModule(&complaint);
   if (decode == nullptr) {
     return Refused(fmt::format("{}, neither a PNG nor a JPEG, which OpenImageIO would read: {}",
-                               kind.name, complaint));
+                               kind->name, complaint));
   }
   ModuleImage image;
-  if (!decode(bytes.data(), bytes.size(), kind.ending, kMaxTextureSide, image)) {
-    return Refused(fmt::format("{}: {}", kind.name, Printable(image.error)));
+  if (!decode(bytes.data(), bytes.size(), kind->ending, kMaxTextureSide, image)) {
+    return Refused(fmt::format("{}: {}", kind->name, Printable(image.error)));
   }
-  return Pixels{image.width, image.height, SpreadChannels(image)};
+  return Pixels{image.width, image.height, SpreadChannels(image), kind->is_light};
 }
 
 std::uint32_t ToByte(double share) {
@@ -117,9 +120,7 @@ const char* OtherImageKind(std::string_view bytes) {
 }
 
 Result<Image> DecodeOtherImage(std::string_view bytes) {
-  const Kind* kind = KindOf(bytes);
-  if (kind == nullptr) return Refused("of an unknown format");
-  const Result<Pixels> pixels = Decode(bytes, *kind);
+  const Result<Pixels> pixels = Decode(bytes);
   if (!pixels) return pixels.error();
   const std::vector<float>& rgba = pixels.value().rgba;
   Image image{{}, pixels.value().width, pixels.value().height, {}};
@@ -129,7 +130,7 @@ Result<Image> DecodeOtherImage(std::string_view bytes) {
     for (std::size_t c = 0; c < 4; ++c) {
       double share = static_cast<double>(rgba[i + c]);
       if (!(share > 0)) share = 0;  // NaN too
-      if (kind->is_light && c < 3) share = SrgbEncode(std::min(share, 1.0));
+      if (pixels.value().is_light && c < 3) share = SrgbEncode(std::min(share, 1.0));
       texel |= ToByte(share) << 8 * c;
     }
     image.texels.push_back(texel);
@@ -138,9 +139,7 @@ Result<Image> DecodeOtherImage(std::string_view bytes) {
 }
 
 Result<FloatImage> DecodeOtherLight(std::string_view bytes) {
-  const Kind* kind = KindOf(bytes);
-  if (kind == nullptr) return Refused("of an unknown format");
-  const Result<Pixels> pixels = Decode(bytes, *kind);
+  const Result<Pixels> pixels = Decode(bytes);
   if (!pixels) return pixels.error();
   const std::vector<float>& rgba = pixels.value().rgba;
   FloatImage image{{}, pixels.value().width, pixels.value().height, {}};
@@ -148,8 +147,9 @@ Result<FloatImage> DecodeOtherLight(std::string_view bytes) {
   for (std::size_t i = 0; i < rgba.size(); ++i) {
     if (i % 4 == 3) continue;
     const float number = rgba[i];
-    image.rgb.push_back(
-        kind->is_light ? number : static_cast<float>(SrgbDecode(static_cast<double>(number))));
+    image.rgb.push_back(pixels.value().is_light
+                            ? number
+                            : static_cast<float>(SrgbDecode(static_cast<double>(number))));
   }
   return image;
 }

@@ -1,6 +1,7 @@
 #include "src/render/shade_lights.h"
 
 #include "simd/query.h"
+#include "src/scalar/pass_light.h"
 
 namespace sheaf {
 
@@ -65,7 +66,8 @@ std::uint32_t LightShader<Real>::FindShares(const LightData<Real>& light, std::u
     by_surface.r[surface] = by_ray.r[i];
     by_surface.g[surface] = by_ray.g[i];
     by_surface.b[surface] = by_ray.b[i];
-    lit_[surface] = by_ray.r[i] > 0 || by_ray.g[i] > 0 || by_ray.b[i] > 0 ? 1 : 0;
+    const Vec3<Real> share = {by_ray.r[i], by_ray.g[i], by_ray.b[i]};
+    lit_[surface] = scalar::IsLight(share) ? 1 : 0;
     lit += lit_[surface];
   }
   clock_.Charge(Phase::kShadow, rays, rays);
