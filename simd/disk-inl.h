@@ -9,6 +9,7 @@
 
 #include <limits>
 
+#include "simd/frame-inl.h"
 #include "simd/math-inl.h"
 #include "simd/query.h"
 #include "simd/sphere-inl.h"
@@ -45,14 +46,12 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE void DiskCoordinates(D d, V nx, V ny, V nz, V lx, V ly, V lz, V r, V& u, V& v) {
   using W = hn::TFromD<D>;
   NormalizeWide(d, nx, ny, nz);
-  const V one = hn::Set(d, W(1)), half = hn::Set(d, W(0.5));
-  const V sign = hn::CopySign(one, nz);
-  const V a = hn::Div(hn::Set(d, W(-1)), hn::Add(sign, nz));
-  const V b = hn::Mul(hn::Mul(nx, ny), a);
+  const V half = hn::Set(d, W(0.5));
+  V xx, xy, xz, yx, yy, yz;
+  MakeFrame(d, nx, ny, nz, xx, xy, xz, yx, yy, yz);
   const V scale = hn::Div(half, r);
-  const V along_x = Dot(d, lx, ly, lz, hn::Add(one, hn::Mul(sign, hn::Mul(hn::Mul(nx, nx), a))),
-                        hn::Mul(sign, b), hn::Neg(hn::Mul(sign, nx)));
-  const V along_y = Dot(d, lx, ly, lz, b, hn::Add(sign, hn::Mul(hn::Mul(ny, ny), a)), hn::Neg(ny));
+  const V along_x = Dot(d, lx, ly, lz, xx, xy, xz);
+  const V along_y = Dot(d, lx, ly, lz, yx, yy, yz);
   u = hn::Add(half, hn::Mul(along_x, scale));
   v = hn::Sub(half, hn::Mul(along_y, scale));
 }

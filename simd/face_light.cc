@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
+#include "simd/draw_light-inl.h"
 #include "simd/light-inl.h"
 #include "simd/material-inl.h"
 
@@ -13,8 +14,9 @@ namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
 std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Real>& material,
-                             const SurfaceView<Real>& surfaces, std::uint32_t count,
-                             std::uint32_t* faces, const IncidenceOutput<Real>& incidence) {
+                             const SurfaceView<Real>& surfaces, const SampleView<Real>& points,
+                             std::uint32_t count, std::uint32_t* faces,
+                             const IncidenceOutput<Real>& incidence) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
@@ -22,7 +24,11 @@ std::uint32_t FaceLightLanes(const LightData<Real>& light, const MaterialData<Re
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
     V lx = hn::Zero(d), ly = hn::Zero(d), lz = hn::Zero(d), n_dot_l = hn::Zero(d),
       falloff = hn::Zero(d);
-    ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    if (light.shape == LightShape::kPoint) {
+      ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    } else {
+      DrawIncidence(d, light, surfaces, points, i, lx, ly, lz, n_dot_l, falloff, incidence);
+    }
     // False for NaN: a light that lies on the point gives nothing.
     auto lanes = hn::And(LanesBelow(d, i, count), hn::Gt(n_dot_l, hn::Zero(d)));
     lanes = hn::And(lanes, HasLocalLight(d, material, surfaces, i));

@@ -8,12 +8,15 @@
 namespace sheaf {
 
 // Writes faces[0, count): 1 where the light lies above the surface (n . l > 0) and the surface
-// shows its own light, else 0; and how the light meets those. Returns how many there are. Reads and
-// writes PaddedCount(count) lanes.
+// shows its own light, else 0; and how the light meets those, of a light with a size at `points` of
+// it, one a surface. Of other lights points are not read, and incidence.end_x and so on are left
+// alone; either may be null then. Returns how many there are. Bits: as sheaf::scalar::IncidenceOf.
+// Reads and writes PaddedCount(count) lanes.
 template <typename Real>
 using FaceLightKernel = std::uint32_t(const LightData<Real>& light,
                                       const MaterialData<Real>& material,
-                                      const SurfaceView<Real>& surfaces, std::uint32_t count,
+                                      const SurfaceView<Real>& surfaces,
+                                      const SampleView<Real>& points, std::uint32_t count,
                                       std::uint32_t* faces, const IncidenceOutput<Real>& incidence);
 
 }  // namespace sheaf

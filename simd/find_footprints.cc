@@ -7,6 +7,7 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
+#include "simd/frame-inl.h"
 #include "simd/math-inl.h"
 #include "simd/query.h"
 
@@ -53,15 +54,11 @@ HWY_INLINE void SlopesOnSpheres(D d, V radius, V nx, V ny, V nz, V facing, const
 // (nx, ny, nz) are the normals of the disks' fronts.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>, typename Put>
 HWY_INLINE void SlopesOnDisks(D d, V radius, V nx, V ny, V nz, V facing, const Put& put) {
-  const V one = hn::Set(d, Real(1));
-  const V sign = hn::CopySign(one, nz);
-  const V a = hn::Div(hn::Set(d, Real(-1)), hn::Add(sign, nz));
-  const V b = hn::Mul(hn::Mul(nx, ny), a);
+  V xx, xy, xz, yx, yy, yz;
+  MakeFrame(d, nx, ny, nz, xx, xy, xz, yx, yy, yz);
   const V scale = hn::Div(hn::Set(d, Real(0.5)), radius);
-  const V x = hn::Add(one, hn::Mul(sign, hn::Mul(hn::Mul(nx, nx), a)));
-  const V y = hn::Add(sign, hn::Mul(hn::Mul(ny, ny), a));
-  put(hn::Mul(b, scale), hn::Mul(y, scale), hn::Mul(hn::Neg(ny), scale), hn::Mul(x, scale),
-      hn::Mul(hn::Mul(sign, b), scale), hn::Mul(hn::Neg(hn::Mul(sign, nx)), scale), facing);
+  put(hn::Mul(yx, scale), hn::Mul(yy, scale), hn::Mul(yz, scale), hn::Mul(xx, scale),
+      hn::Mul(xy, scale), hn::Mul(xz, scale), facing);
 }
 
 template <class D, class V = hn::Vec<D>>

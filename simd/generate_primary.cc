@@ -7,13 +7,40 @@
 #include "simd/dispatch.h"
 #include "simd/math-inl.h"
 #include "simd/sin_cos-inl.h"
+#include "simd/warp-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
+// Moves the origins to points of the lens, and turns the rays to where the others are sharp.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void LookThroughLens(D d, const CameraData<Real>& camera, V u, V v, V& ox, V& oy, V& oz,
+                                V& dx, V& dy, V& dz) {
+  V a, b;
+  if (camera.blades > 0) {
+    PolygonPoint(d, camera.blades, camera.blade_turn, u, v, a, b);
+  } else {
+    DiskPoint(d, u, v, a, b);
+  }
+  const V ahead = Dot(d, dx, dy, dz, hn::Set(d, camera.forward[0]), hn::Set(d, camera.forward[1]),
+                      hn::Set(d, camera.forward[2]));
+  const V length = hn::Div(hn::Set(d, camera.focus), ahead);
+  const auto move = [&](int axis, V& origin, V& direction) SHEAF_LAMBDA {
+    const V aside = hn::Add(hn::Mul(hn::Set(d, camera.lens_right[axis]), a),
+                            hn::Mul(hn::Set(d, camera.lens_up[axis]), b));
+    direction = hn::Sub(hn::Mul(direction, length), aside);
+    origin = hn::Add(origin, aside);
+  };
+  move(0, ox, dx);
+  move(1, oy, dy);
+  move(2, oz, dz);
+  Normalize(d, dx, dy, dz);
+}
+
 template <typename Real>
 void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const Real* y, Real sx,
-                          Real sy, std::uint32_t count, const RayOutput<Real>& rays) {
+                          Real sy, const SampleView<Real>& lens, std::uint32_t count,
+                          const RayOutput<Real>& rays) {
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
@@ -68,6 +95,10 @@ void GeneratePrimaryLanes(const CameraData<Real>& camera, const Real* x, const R
         Normalize(d, dx, dy, dz);
         break;
       }
+    }
+    if (camera.lens != LensUse::kNone) {
+      LookThroughLens(d, camera, hn::LoadU(d, lens.u + i), hn::LoadU(d, lens.v + i), ox, oy, oz, dx,
+                      dy, dz);
     }
     hn::StoreU(ox, d, rays.origin_x + i);
     hn::StoreU(oy, d, rays.origin_y + i);

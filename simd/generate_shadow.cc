@@ -15,14 +15,15 @@ namespace sheaf::simd::HWY_NAMESPACE {
 
 template <typename Real>
 std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
-                                  const std::uint32_t* faces, std::uint32_t count,
-                                  const RayOutput<Real>& rays, std::uint32_t* surface_of_ray) {
+                                  const IncidenceView<Real>& incidence, const std::uint32_t* faces,
+                                  std::uint32_t count, const RayOutput<Real>& rays,
+                                  std::uint32_t* surface_of_ray) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
-  const V light_x = hn::Set(d, light.vector[0]);
-  const V light_y = hn::Set(d, light.vector[1]);
-  const V light_z = hn::Set(d, light.vector[2]);
+  V light_x = hn::Set(d, light.vector[0]);
+  V light_y = hn::Set(d, light.vector[1]);
+  V light_z = hn::Set(d, light.vector[2]);
   std::uint32_t size = 0;
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
     const auto wanted = hn::Ne(LoadIds(d, faces + i), hn::Zero(di));
@@ -34,6 +35,11 @@ std::uint32_t GenerateShadowLanes(const LightData<Real>& light, const SurfaceVie
     const V nx = hn::LoadU(d, surfaces.face_x + i);
     const V ny = hn::LoadU(d, surfaces.face_y + i);
     const V nz = hn::LoadU(d, surfaces.face_z + i);
+    if (light.shape != LightShape::kPoint) {
+      light_x = hn::LoadU(d, incidence.end_x + i);
+      light_y = hn::LoadU(d, incidence.end_y + i);
+      light_z = hn::LoadU(d, incidence.end_z + i);
+    }
     V away = hn::LoadU(d, surfaces.offset + i);
     auto source = LoadIds(d, surfaces.source + i);
     if (light.kind == LightKind::kPointFromLight) {

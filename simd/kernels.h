@@ -3,6 +3,8 @@
 #define SHEAF_SIMD_KERNELS_H_
 
 #include "simd/blend_vertices.h"
+#include "simd/draw_facets.h"
+#include "simd/draw_samples.h"
 #include "simd/face_light.h"
 #include "simd/find_footprints.h"
 #include "simd/generate_primary.h"
@@ -23,6 +25,8 @@
   X(ReportTarget, report_target)       \
   X(GeneratePrimary, generate_primary) \
   X(BlendVertices, blend_vertices)     \
+  X(DrawFacets, draw_facets)           \
+  X(DrawSamples, draw_samples)         \
   X(FindFootprints, find_footprints)   \
   X(SampleTexture, sample_texture)     \
   X(ShadeAmbient, shade_ambient)       \

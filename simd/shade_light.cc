@@ -30,7 +30,9 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     V n_dot_l = hn::LoadU(d, incidence.cosine + i);
     V falloff = hn::LoadU(d, incidence.falloff + i);
     // FaceLight is strict: what is fast stays so from the light's direction on.
-    if constexpr (kIsFast) ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    if (kIsFast && light.shape == LightShape::kPoint) {
+      ComputeIncidence(d, light, surfaces, i, lx, ly, lz, n_dot_l, falloff);
+    }
     V attenuation = hn::Div(one, falloff);
     if (light.is_spot) attenuation = hn::Mul(attenuation, ConeShare(d, light, lx, ly, lz));
     const V diffuse = hn::Mul(LoadTerm(d, material, material.kd, surfaces.kd, i), n_dot_l);

@@ -24,6 +24,15 @@ inline constexpr std::uint32_t kNeedsTerms = 128;
 // that covers: src/scalar/footprint.h. Not among all either: textures and checkers make them.
 inline constexpr std::uint32_t kNeedsWidth = 256;
 inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
+// Random numbers for its rays, which a frame asks for that has something to draw from.
+inline constexpr std::uint32_t kNeedsSeed = 1024;
+// Normals drawn for rough mirrors and interfaces: src/scalar/gloss.h.
+inline constexpr std::uint32_t kNeedsGloss = 2048;
+
+// A table of gloss has kGlossEntries numbers for rays that arrive from outside, for square roots of
+// cosines from 0 to 1 in kGlossSteps steps, then as many for rays from inside.
+inline constexpr int kGlossSteps = 64;
+inline constexpr int kGlossEntries = kGlossSteps + 2;  // the last twice, to be read beside 1
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
 enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };
@@ -58,6 +67,10 @@ struct MaterialData {
   Real reflect[3], transmit[3];
   Real passes[3];  // of a light behind: `transmit`, or 0 where shadows are opaque
   Real ior;
+  // Of microfacets: the width of their slopes, 0 for a smooth surface, and what takes the place of
+  // light that they send to one another: a table of gloss.
+  Real slope_width = 0;
+  const Real* gloss = nullptr;
   bool attenuates;  // whether light is taken inside
   Real attenuation[3], attenuation_distance;
   FinishData<Real> finish;
@@ -92,7 +105,7 @@ constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
          (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
          (material.kind == BaseColour::kFilteredChecker ? kNeedsFootprint | kNeedsWidth : 0) |
          (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
-         (transmits ? kNeedsTransmission : 0);
+         (material.slope_width > 0 ? kNeedsGloss : 0) | (transmits ? kNeedsTransmission : 0);
 }
 
 // Whether some of a light goes on behind the surface.
@@ -145,6 +158,9 @@ enum class LightKind : std::uint32_t {
   kDirectional,
 };
 
+// What is seen of a light. All but a point are drawn from: src/scalar/incidence.h.
+enum class LightShape : std::uint32_t { kPoint, kRectangle, kDisk, kSphere, kSun };
+
 template <typename Real>
 struct LightData {
   LightKind kind;
@@ -158,10 +174,19 @@ struct LightData {
   std::uint32_t is_spot = 0;
   Real axis[3] = {};
   Real cone_scale = 0, cone_offset = 0;
+  // A light with a size. Then `axis` is the way a rectangle or disk shines, and `rgb` is divided by
+  // `samples`.
+  LightShape shape = LightShape::kPoint;
+  std::uint32_t samples = 1;  // drawn a surface and sample of a pixel
+  // A rectangle's edges, a disk's half axes, or unit vectors across a sun's direction.
+  Real across_u[3] = {}, across_v[3] = {};
+  Real extent = 0;  // a ball's radius; 1 - cos of the half angle of a sun
 };
 
 enum class CameraModel : std::uint32_t { kPerspective, kOrthographic, kEquirectangular, kFisheye };
 inline constexpr CameraModel kLastCameraModel = CameraModel::kFisheye;
+
+enum class LensUse : std::uint32_t { kNone, kThin };
 
 // Pixel (x, y) sampled at (sx, sy) in [0, 1)^2 lies at a = (x + sx) - half_width steps to the right
 // and b = half_height - (y + sy) steps up.
@@ -174,6 +199,11 @@ struct CameraData {
   Real right[3], up[3];
   Real turns_x, turns_y;         // such a step to the right and up, in quarter turns
   Real half_width, half_height;  // pixels
+  // A thin lens, of cameras with a plane: across it to the right and up, its radius long; how far
+  // ahead what is sharp lies; the polygon of its blades, 0 for a disk, and how far that is turned.
+  LensUse lens = LensUse::kNone;
+  Real lens_right[3] = {}, lens_up[3] = {};
+  Real focus = 0, blades = 0, blade_turn = 0;  // the turn in quarter turns
 };
 
 // How many children surfaces have.

@@ -32,10 +32,13 @@ HWY_INLINE void StoreArrival(const MaterialData<Real>& material, const SurfaceVi
                              std::uint32_t i, std::uint32_t at, Splits<Real>& splits) {
   const Lanes<Real> d;
   const IdLanes<Lanes<Real>> di;
+  const bool is_rough = (material.needs & kNeedsGloss) != 0;
   const auto towards =
-      hn::Neg(Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
-                  hn::LoadU(d, surfaces.normal_z + i), hn::LoadU(d, surfaces.direction_x + i),
-                  hn::LoadU(d, surfaces.direction_y + i), hn::LoadU(d, surfaces.direction_z + i)));
+      hn::Neg(Dot(d, hn::LoadU(d, (is_rough ? surfaces.facet_x : surfaces.normal_x) + i),
+                  hn::LoadU(d, (is_rough ? surfaces.facet_y : surfaces.normal_y) + i),
+                  hn::LoadU(d, (is_rough ? surfaces.facet_z : surfaces.normal_z) + i),
+                  hn::LoadU(d, surfaces.direction_x + i), hn::LoadU(d, surfaces.direction_y + i),
+                  hn::LoadU(d, surfaces.direction_z + i)));
   hn::Store(hn::IfThenElseZero(hn::Gt(towards, hn::Zero(d)), towards), d, splits.cos_i + at);
   if (!(material.needs & kNeedsTransmission)) return;
   const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
@@ -83,6 +86,36 @@ HWY_INLINE void FillBlock(const MaterialData<Real>& material, const SurfaceView<
   for (std::uint32_t i = 0; i < count; i += LaneCount(WideLanes<Real>())) SplitLight(splits, i);
 }
 
+// KeepOnSide, then the unit vector.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void FinishDirection(D d, const MaterialData<Real>& material, V fx, V fy, V fz, V nx,
+                                V ny, V nz, V side, V& x, V& y, V& z) {
+  if (material.needs & kNeedsNormals) {
+    const auto differs = hn::Or(hn::Or(hn::Ne(nx, fx), hn::Ne(ny, fy)), hn::Ne(nz, fz));
+    const V height = Dot(d, x, y, z, fx, fy, fz);
+    const auto crosses = hn::And(differs, hn::Lt(hn::Mul(height, side), hn::Zero(d)));
+    const V back = hn::IfThenElseZero(crosses, hn::Mul(hn::Set(d, Real(2)), height));
+    x = hn::IfThenElse(crosses, hn::Sub(x, hn::Mul(fx, back)), x);
+    y = hn::IfThenElse(crosses, hn::Sub(y, hn::Mul(fy, back)), y);
+    z = hn::IfThenElse(crosses, hn::Sub(z, hn::Mul(fz, back)), z);
+  }
+  Normalize(d, x, y, z);
+}
+
+// src/scalar/spawn.h; `n_dot_child` is the cosine of the child's direction and the normal.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE V GlossShare(D d, const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
+                        std::uint32_t i, V n_dot_child, V side) {
+  const V one = hn::Set(d, Real(1)), two = hn::Set(d, Real(2));
+  const V cosine = hn::Mul(n_dot_child, side), square = hn::Mul(cosine, cosine);
+  const V spread =
+      hn::Mul(hn::Set(d, material.slope_width * material.slope_width), hn::Sub(one, square));
+  const V unmasked =
+      hn::Div(hn::Mul(two, cosine), hn::Add(cosine, hn::Sqrt(hn::Add(square, spread))));
+  const V above = hn::IfThenElseZero(hn::Gt(cosine, hn::Zero(d)), unmasked);
+  return hn::Mul(above, hn::LoadU(d, surfaces.gloss + i));
+}
+
 template <typename Real>
 SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
                            std::uint32_t count, const PathView<Real>& parents, Real min_throughput,
@@ -110,6 +143,13 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V dy = hn::LoadU(d, surfaces.direction_y + i);
     const V dz = hn::LoadU(d, surfaces.direction_z + i);
     const V offset = hn::LoadU(d, surfaces.offset + i);
+    // What rays are mirrored and bent at.
+    V mx = nx, my = ny, mz = nz;
+    if (material.needs & kNeedsGloss) {
+      mx = hn::LoadU(d, surfaces.facet_x + i);
+      my = hn::LoadU(d, surfaces.facet_y + i);
+      mz = hn::LoadU(d, surfaces.facet_z + i);
+    }
     const V fx = hn::LoadU(d, surfaces.face_x + i);
     const V fy = hn::LoadU(d, surfaces.face_y + i);
     const V fz = hn::LoadU(d, surfaces.face_z + i);
@@ -142,19 +182,17 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, V side, VI from,
                             const RayOutput<Real>& rays, const PathOutput<Real>& paths,
                             std::uint32_t& at) HWY_ATTR {
+      if (material.needs & kNeedsGloss) {
+        FinishDirection(d, material, fx, fy, fz, nx, ny, nz, side, x, y, z);
+        const V share = GlossShare(d, material, surfaces, i, Dot(d, x, y, z, nx, ny, nz), side);
+        wr = hn::Mul(wr, share), wg = hn::Mul(wg, share), wb = hn::Mul(wb, share);
+      }
       const auto counts = hn::Or(hn::Or(hn::Gt(wr, least), hn::Gt(wg, least)), hn::Gt(wb, least));
       const auto kept = hn::And(lanes, counts);
       if (hn::AllFalse(d, kept)) return;
-      if (material.needs & kNeedsNormals) {
-        const auto differs = hn::Or(hn::Or(hn::Ne(nx, fx), hn::Ne(ny, fy)), hn::Ne(nz, fz));
-        const V height = Dot(d, x, y, z, fx, fy, fz);
-        const auto crosses = hn::And(differs, hn::Lt(hn::Mul(height, side), zero));
-        const V back = hn::IfThenElseZero(crosses, hn::Mul(hn::Set(d, Real(2)), height));
-        x = hn::IfThenElse(crosses, hn::Sub(x, hn::Mul(fx, back)), x);
-        y = hn::IfThenElse(crosses, hn::Sub(y, hn::Mul(fy, back)), y);
-        z = hn::IfThenElse(crosses, hn::Sub(z, hn::Mul(fz, back)), z);
+      if (!(material.needs & kNeedsGloss)) {
+        FinishDirection(d, material, fx, fy, fz, nx, ny, nz, side, x, y, z);
       }
-      Normalize(d, x, y, z);
       const auto order = CompactOrder(d, kept);
       CompactStore(d, ox, order, rays.origin_x + at);
       CompactStore(d, oy, order, rays.origin_y + at);
@@ -189,8 +227,8 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V twice = hn::Mul(hn::Set(d, Real(2)), cos_i);
     append(reflected_throughput(throughput_r, 0), reflected_throughput(throughput_g, 1),
            reflected_throughput(throughput_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
-           hn::Add(pz, away_z), hn::Add(dx, hn::Mul(nx, twice)), hn::Add(dy, hn::Mul(ny, twice)),
-           hn::Add(dz, hn::Mul(nz, twice)), one, source, reflected_rays, reflected_paths,
+           hn::Add(pz, away_z), hn::Add(dx, hn::Mul(mx, twice)), hn::Add(dy, hn::Mul(my, twice)),
+           hn::Add(dz, hn::Mul(mz, twice)), one, source, reflected_rays, reflected_paths,
            size.reflected);
 
     if (hn::AllTrue(d, is_total)) continue;
@@ -201,9 +239,9 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     const V bend = hn::Sub(hn::Mul(eta, cos_i), cos_t);
     append(refracted_throughput(throughput_r, 0), refracted_throughput(throughput_g, 1),
            refracted_throughput(throughput_b, 2), hn::Sub(px, away_x), hn::Sub(py, away_y),
-           hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(nx, bend)),
-           hn::Add(hn::Mul(dy, eta), hn::Mul(ny, bend)),
-           hn::Add(hn::Mul(dz, eta), hn::Mul(nz, bend)), hn::Neg(one), hn::Xor(source, bit),
+           hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(mx, bend)),
+           hn::Add(hn::Mul(dy, eta), hn::Mul(my, bend)),
+           hn::Add(hn::Mul(dz, eta), hn::Mul(mz, bend)), hn::Neg(one), hn::Xor(source, bit),
            refracted_rays, refracted_paths, size.refracted);
   }
   return size;

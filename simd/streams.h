@@ -53,11 +53,12 @@ struct PathFields {
   Field<std::uint32_t> pixel;                            // index into the tile
   Field<std::uint32_t> parent;                           // position in the stream that spawned it
   Field<Real> throughput_r, throughput_g, throughput_b;  // throughput since the eye
-  Field<Real> width;  // of the ray's cone where it starts; with kNeedsWidth
+  Field<Real> width;          // of the ray's cone where it starts; with kNeedsWidth
+  Field<std::uint32_t> seed;  // of its random numbers; with kNeedsSeed
 
-  static constexpr auto kFields =
-      std::make_tuple(&PathFields::pixel, &PathFields::parent, &PathFields::throughput_r,
-                      &PathFields::throughput_g, &PathFields::throughput_b, &PathFields::width);
+  static constexpr auto kFields = std::make_tuple(
+      &PathFields::pixel, &PathFields::parent, &PathFields::throughput_r, &PathFields::throughput_g,
+      &PathFields::throughput_b, &PathFields::width, &PathFields::seed);
 };
 
 // What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
@@ -102,6 +103,9 @@ struct SurfaceFields {
   Field<Real> transmit_r, transmit_g, transmit_b;
   Field<Real> width;                     // of the ray's cone; with kNeedsWidth
   Field<Real> footprint_u, footprint_v;  // how much of u and v it covers; with kNeedsFootprint
+  // With kNeedsGloss: the normal that rays are mirrored and bent at, and what their throughputs are
+  // multiplied with besides.
+  Field<Real> facet_x, facet_y, facet_z, gloss;
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -117,7 +121,9 @@ struct SurfaceFields {
       &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
       &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
       &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
-      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v);
+      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
+      &SurfaceFields::facet_x, &SurfaceFields::facet_y, &SurfaceFields::facet_z,
+      &SurfaceFields::gloss);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.
@@ -146,13 +152,23 @@ struct ColourFields {
 // How a light meets surfaces, one an element: what FaceLight finds and ShadeLight goes by.
 template <typename Real, template <typename> class Field>
 struct IncidenceFields {
-  Field<Real> x, y, z;  // unit vector to the light
-  Field<Real> cosine;   // of it and the normal; 0 where the light lies on the point
-  Field<Real> falloff;  // what the light is divided by
+  Field<Real> x, y, z;              // unit vector to the light
+  Field<Real> cosine;               // of it and the normal; 0 where the light lies on the point
+  Field<Real> falloff;              // what the light is divided by
+  Field<Real> end_x, end_y, end_z;  // of lights with a size: the point drawn, or a sun's direction
 
   static constexpr auto kFields =
       std::make_tuple(&IncidenceFields::x, &IncidenceFields::y, &IncidenceFields::z,
-                      &IncidenceFields::cosine, &IncidenceFields::falloff);
+                      &IncidenceFields::cosine, &IncidenceFields::falloff, &IncidenceFields::end_x,
+                      &IncidenceFields::end_y, &IncidenceFields::end_z);
+};
+
+// Random points of the unit square, one an element: src/scalar/draw_sample.h.
+template <typename Real, template <typename> class Field>
+struct SampleFields {
+  Field<Real> u, v;  // in [0, 1)
+
+  static constexpr auto kFields = std::make_tuple(&SampleFields::u, &SampleFields::v);
 };
 
 template <typename Real>
@@ -179,6 +195,10 @@ template <typename Real>
 using TexelView = TexelFields<Real, ConstField>;
 template <typename Real>
 using TexelOutput = TexelFields<Real, MutableField>;
+template <typename Real>
+using SampleView = SampleFields<Real, ConstField>;
+template <typename Real>
+using SampleOutput = SampleFields<Real, MutableField>;
 template <typename Real>
 using IncidenceView = IncidenceFields<Real, ConstField>;
 template <typename Real>

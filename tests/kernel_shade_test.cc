@@ -180,7 +180,7 @@ TEST_CASE_TEMPLATE("primary rays", Real, float, double) {
           x[i] = static_cast<Real>(i * 37 % 640), y[i] = static_cast<Real>(i * 53 % 479);
         }
         const Real sx = Real(0.5), sy = Real(0.3);
-        kernels.generate_primary(data, x.data(), y.data(), sx, sy, count, rays.output());
+        kernels.generate_primary(data, x.data(), y.data(), sx, sy, {}, count, rays.output());
         const auto got = rays.view();
         for (std::uint32_t i = 0; i < count; ++i) {
           const Ray<Real> want = scalar::CameraRay(data, x[i], y[i], sx, sy);
@@ -282,10 +282,10 @@ TEST_CASE_TEMPLATE("ambient light, facing, shadow rays and direct light", Real, 
       faces.Allocate(StreamCapacity(count)), surface_of_ray.Allocate(StreamCapacity(count));
 
       kernels.shade_ambient(material, surfaces.view(), count, colours.output());
-      const std::uint32_t facing = kernels.face_light(light, material, surfaces.view(), count,
+      const std::uint32_t facing = kernels.face_light(light, material, surfaces.view(), {}, count,
                                                       faces.data(), incidences.output());
       const std::uint32_t shadows = kernels.generate_shadow(
-          light, surfaces.view(), faces.data(), count, rays.output(), surface_of_ray.data());
+          light, surfaces.view(), {}, faces.data(), count, rays.output(), surface_of_ray.data());
       REQUIRE(shadows == facing);
       // Every third surface that faces the light is in shadow.
       for (std::uint32_t i = 0; i < count; i += 3) faces[i] = 0;

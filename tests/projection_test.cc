@@ -115,7 +115,7 @@ TEST_CASE_TEMPLATE("the kernel has the bits of its twin", Real, float, double) {
         }
         // The middle of the middle pixel is the picture's middle, where a fisheye divides by 0.
         for (const auto& [sx, sy] : {std::pair(Real(0), Real(0.5)), {Real(0.5), Real(0.3)}}) {
-          kernels.generate_primary(data, x.data(), y.data(), sx, sy, count, rays.output());
+          kernels.generate_primary(data, x.data(), y.data(), sx, sy, {}, count, rays.output());
           const auto got = rays.view();
           for (std::uint32_t i = 0; i < count; ++i) {
             const auto want = scalar::CameraRay(data, x[i], y[i], sx, sy);

@@ -78,6 +78,10 @@ SceneSummary Summarize(const Scene& scene) {
       {"directional lights", any_light([](const Light& l) {
          return std::holds_alternative<DirectionalLight>(l.source);
        })},
+      {"lights with a size", any_light([](const Light& l) {
+         const auto* sun = std::get_if<DirectionalLight>(&l.source);
+         return sun ? sun->angle > 0 : !std::holds_alternative<PointLight>(l.source);
+       })},
       {"shadows", lit && any_light([](const Light& l) { return l.casts_shadows; })},
       {"highlights", !scene.lights.empty() && any_material([](const Material& m) {
          return m.ks > 0.0 || m.metallic_roughness;
@@ -87,6 +91,10 @@ SceneSummary Summarize(const Scene& scene) {
       {"refraction and Fresnel reflection",
        any_material([](const Material& m) { return !IsBlack(m.transmit); })},
   };
+  summary.features.push_back({"rough reflection and refraction",
+                              any_material([](const Material& m) { return m.roughness > 0.0; })});
+  summary.features.push_back(
+      {"depth of field", any_camera([](const Camera& c) { return c.lens.has_value(); })});
   for (const ProjectionKind& kind : kProjectionKinds) {
     const auto is_kind = [&](const Camera& c) { return &KindOf(c.projection) == &kind; };
     summary.features.push_back({fmt::format("{} cameras", kind.name), any_camera(is_kind)});

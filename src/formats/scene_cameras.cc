@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "src/core/strict_tan.h"
 #include "src/formats/suggest_name.h"
 #include "src/scene/direction.h"
 #include "src/scene/projection.h"
@@ -118,6 +119,60 @@ Json PathJson(const Camera& camera) {
   return path;
 }
 
+constexpr NumberRange kLensLength{1e-30, kMaxCoordinate, "a number in [1e-30, 1e30]"};
+constexpr NumberRange kStop{1e-3, 1e6, "a number in [0.001, 1e6]"};
+constexpr NumberRange kBlades{0, 64, "0 or an integer in [3, 64]"};
+constexpr NumberRange kBladeTurn{-1e6, 1e6, "a number in [-1e6, 1e6]"};
+
+// Of a full-frame camera, in metres.
+constexpr double kUsualSensor = 0.024;
+
+// The aperture's diameter: the focal length, by which a sensor of that height sees the camera's
+// angle, over the f-number.
+double ApertureOf(const Perspective& perspective, double sensor, double f_stop) {
+  return sensor / (2 * StrictTanDegrees(perspective.fov_y / 2)) / f_stop;
+}
+
+Lens ReadLens(const JsonCursor& value, const Camera& camera) {
+  Lens lens;
+  JsonObject object(value);
+  const JsonCursor opening = object.OneOf({"aperture", "f_stop"});
+  const JsonCursor sensor = object.Optional("sensor");
+  double sensor_height = kUsualSensor, f_stop = 0;
+  sensor.Read(kLensLength, &sensor_height);
+  if (opening.present() && opening.key() == "f_stop") {
+    const auto* perspective = std::get_if<Perspective>(&camera.projection);
+    if (perspective == nullptr) {
+      opening.Fail("only perspective cameras have an f-number; say \"aperture\"");
+    } else if (opening.Read(kStop, &f_stop)) {
+      lens.aperture = ApertureOf(*perspective, sensor_height, f_stop);
+    }
+  } else {
+    opening.Read(kLensLength, &lens.aperture);
+    sensor.Fail("only \"f_stop\" needs a sensor");
+  }
+  double focus = 0;
+  if (object.Optional("focus").Read(kLensLength, &focus)) lens.focus = focus;
+  const JsonCursor blades = object.Optional("blades");
+  if (blades.ReadInteger(kBlades, &lens.blades) && lens.blades > 0 && lens.blades < 3) {
+    blades.Fail("0 or an integer in [3, 64] is wanted");
+  }
+  object.Optional("rotation").Read(kBladeTurn, &lens.rotation);
+  object.Finish();
+  if (KindOf(camera.projection).surface != ProjectionSurface::kPlane) {
+    value.Fail(fmt::format("{} cameras have no lens", KindOf(camera.projection).name));
+  }
+  return lens;
+}
+
+Json LensJson(const Lens& lens) {
+  Json json = {{"aperture", lens.aperture}};
+  if (lens.focus) json["focus"] = *lens.focus;
+  if (lens.blades > 0) json["blades"] = lens.blades;
+  if (lens.rotation != 0) json["rotation"] = lens.rotation;
+  return json;
+}
+
 }  // namespace
 
 Camera ReadCamera(const JsonCursor& value, NameTable* names) {
@@ -137,6 +192,9 @@ Camera ReadCamera(const JsonCursor& value, NameTable* names) {
     camera.projection = ReadProjection(projection);
     if (lens.present()) projection.Fail(fmt::format("conflicts with \"{}\"", lens.key()));
   }
+  if (const JsonCursor thin = object.Optional("lens"); thin.present()) {
+    camera.lens = ReadLens(thin, camera);
+  }
   ReadPath(object.Optional("path"), &camera);
   object.Finish();
 
@@ -155,6 +213,7 @@ Json CameraJson(const Camera& camera) {
                {"look_at", VectorJson(camera.look_at)},
                {"up", VectorJson(camera.up)}};
   WriteProjection(camera.projection, &json);
+  if (camera.lens) json["lens"] = LensJson(*camera.lens);
   if (!camera.path.empty()) json["path"] = PathJson(camera);
   return json;
 }

@@ -85,16 +85,57 @@ Source ReadSpotLight(const JsonCursor& value) {
   return light;
 }
 
+constexpr NumberRange kSunAngle{0.0, 180.0, "a number in [0, 180]"};
+constexpr NumberRange kLightRadius{1e-30, kMaxCoordinate, "a number in [1e-30, 1e30]"};
+constexpr NumberRange kLightSamples{1, kMaxLightSamples, "an integer in [1, 1024]"};
+
 Source ReadDirectionalLight(const JsonCursor& value) {
   DirectionalLight light;
   JsonObject object(value);
+  ReadDirection(object.Required("direction"), &light.direction);
+  object.Optional("angle").Read(kSunAngle, &light.angle);
+  object.Finish();
+  return light;
+}
+
+Source ReadRectangleLight(const JsonCursor& value) {
+  RectangleLight light;
+  JsonObject object(value);
+  ReadVector(object.Required("center"), &light.center);
+  const bool has_u = ReadVector(object.Required("u"), &light.u);
+  const JsonCursor v = object.Required("v");
+  if (ReadVector(v, &light.v) && has_u && !SpansPlane(light.u, light.v)) {
+    v.Fail("u and v span no rectangle");
+  }
+  object.Finish();
+  return light;
+}
+
+Source ReadDiskLight(const JsonCursor& value) {
+  DiskLight light;
+  JsonObject object(value);
+  ReadVector(object.Required("center"), &light.center);
+  object.Required("radius").Read(kLightRadius, &light.radius);
   ReadDirection(object.Required("direction"), &light.direction);
   object.Finish();
   return light;
 }
 
-constexpr KeyedReader<Source> kSources[] = {
-    {"point", &ReadPointLight}, {"spot", &ReadSpotLight}, {"directional", &ReadDirectionalLight}};
+Source ReadSphereLight(const JsonCursor& value) {
+  SphereLight light;
+  JsonObject object(value);
+  ReadVector(object.Required("center"), &light.center);
+  object.Required("radius").Read(kLightRadius, &light.radius);
+  object.Finish();
+  return light;
+}
+
+constexpr KeyedReader<Source> kSources[] = {{"point", &ReadPointLight},
+                                            {"spot", &ReadSpotLight},
+                                            {"directional", &ReadDirectionalLight},
+                                            {"rectangle", &ReadRectangleLight},
+                                            {"disk", &ReadDiskLight},
+                                            {"sphere", &ReadSphereLight}};
 
 Json PointJson(const PointLight& point) {
   const Falloff& falloff = point.falloff;
@@ -123,6 +164,7 @@ Light ReadLight(JsonObject* object) {
   if (source.present()) light.source = ReadByKey(source, kSources);
   ReadColour(object->Optional("colour"), kStrength, &light.colour);
   object->Optional("shadows").ReadBoolean(&light.casts_shadows);
+  object->Optional("samples").ReadInteger(kLightSamples, &light.samples);
 
   const JsonCursor strength = object->OneOf({"E0", "intensity"});
   const bool is_read = strength.Read(kIntensity, &light.intensity);
@@ -153,11 +195,29 @@ Json LightJson(const Light& light) {
   json.update(Match(
       light.source, [](const PointLight& point) { return PointJson(point); },
       [](const DirectionalLight& sun) -> Json {
-        return {{"directional", {{"direction", VectorJson(sun.direction)}}}};
+        Json members = {{"direction", VectorJson(sun.direction)}};
+        if (sun.angle > 0) members["angle"] = sun.angle;
+        return {{"directional", members}};
+      },
+      [](const RectangleLight& rectangle) -> Json {
+        return {{"rectangle",
+                 {{"center", VectorJson(rectangle.center)},
+                  {"u", VectorJson(rectangle.u)},
+                  {"v", VectorJson(rectangle.v)}}}};
+      },
+      [](const DiskLight& disk) -> Json {
+        return {{"disk",
+                 {{"center", VectorJson(disk.center)},
+                  {"radius", disk.radius},
+                  {"direction", VectorJson(disk.direction)}}}};
+      },
+      [](const SphereLight& sphere) -> Json {
+        return {{"sphere", {{"center", VectorJson(sphere.center)}, {"radius", sphere.radius}}}};
       }));
   json["colour"] = VectorJson(light.colour);
   json["intensity"] = light.intensity;
   json["shadows"] = light.casts_shadows;
+  if (light.samples != 1) json["samples"] = light.samples;
   return json;
 }
 

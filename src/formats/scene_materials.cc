@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "src/core/match.h"
-#include "src/formats/suggest_name.h"
+#include "src/formats/read_choice.h"
 
 namespace sheaf {
 namespace {
@@ -39,6 +39,7 @@ constexpr Parameter kParameters[] = {
     {"reflect", &Material::reflect, kFraction},
     {"transmit", &Material::transmit, kFraction},
     {"ior", &Material::ior, kIor},
+    {"roughness", &Material::roughness, kUnit, Written::kUnlessDefault},
     {"attenuation", &Material::attenuation, kFraction, Written::kUnlessDefault},
     {"attenuation_distance", &Material::attenuation_distance, kDistance, Written::kUnlessDefault},
 };
@@ -72,29 +73,6 @@ Checker ReadChecker(const JsonCursor& value, Transfer transfer) {
   object.Optional("filter").ReadBoolean(&checker.is_filtered);
   object.Finish();
   return checker;
-}
-
-template <typename Choice, std::size_t count>
-void ReadChoice(const JsonCursor& value,
-                const std::pair<std::string_view, Choice> (&choices)[count], Choice* out) {
-  std::string word;
-  if (!value.ReadString(&word)) return;
-  std::vector<std::string_view> known;
-  for (const auto& [name, choice] : choices) {
-    known.push_back(name);
-    if (name != word) continue;
-    *out = choice;
-    return;
-  }
-  value.Fail(fmt::format("expected one of {}{}", fmt::join(known, ", "), DidYouMean(word, known)));
-}
-
-template <typename Choice, std::size_t count>
-std::string_view NameOf(Choice value, const std::pair<std::string_view, Choice> (&choices)[count]) {
-  for (const auto& [name, choice] : choices) {
-    if (choice == value) return name;
-  }
-  return "";
 }
 
 constexpr std::pair<std::string_view, Wrap> kWraps[] = {

@@ -11,6 +11,7 @@
 #include "src/core/match.h"
 #include "src/formats/other_images.h"
 #include "src/formats/printable.h"
+#include "src/formats/read_choice.h"
 #include "src/formats/read_file.h"
 #include "src/scene/srgb.h"
 
@@ -95,6 +96,13 @@ void ReadEnvironment(const JsonCursor& value, ColourSource* source,
   object.Finish();
 }
 
+constexpr std::pair<std::string_view, Integrator> kIntegrators[] = {
+    {"whitted", Integrator::kWhitted}, {"distributed", Integrator::kDistributed}};
+constexpr std::pair<std::string_view, PixelFilter> kPixelFilters[] = {
+    {"box", PixelFilter::kBox},
+    {"gaussian", PixelFilter::kGaussian},
+    {"blackman-harris", PixelFilter::kBlackmanHarris}};
+
 // Whether the second of two words stands there; an error where neither does.
 bool IsOther(const JsonCursor& value, const char* usual, const char* other) {
   std::string word;
@@ -164,6 +172,8 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   if (IsOther(object.Optional("shadows"), "through", "opaque")) {
     settings.shadows = Shadows::kOpaque;
   }
+  ReadChoice(object.Optional("integrator"), kIntegrators, &settings.integrator);
+  ReadChoice(object.Optional("pixel_filter"), kPixelFilters, &settings.filter);
   object.Finish();
   return settings;
 }
@@ -180,6 +190,12 @@ Json SettingsJson(const Settings& settings) {
   if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");
   if (settings.tone == Tone::kFilmic) json["tone"] = "filmic";
   if (settings.shadows == Shadows::kOpaque) json["shadows"] = "opaque";
+  if (settings.integrator != Integrator::kDistributed) {
+    json["integrator"] = NameOf(settings.integrator, kIntegrators);
+  }
+  if (settings.filter != PixelFilter::kBox) {
+    json["pixel_filter"] = NameOf(settings.filter, kPixelFilters);
+  }
   json["srgb"] = settings.transfer == Transfer::kSrgb ? Json("pictures") : Json(false);
   return json;
 }

@@ -172,7 +172,7 @@ Tile::Tile(const Scene& described)
     scalar_rays.push_back(scalar::CameraRay(camera, x[i], y[i], 0.5f, 0.5f));
   }
   const Kernels<Real> kernels = StrictKernels<Real>(0);
-  kernels.generate_primary(camera, x.data(), y.data(), 0.5f, 0.5f, kCount, rays.output());
+  kernels.generate_primary(camera, x.data(), y.data(), 0.5f, 0.5f, {}, kCount, rays.output());
   const auto sources = rays.output();
   for (std::uint32_t i = 0; i < kCount; ++i) sources.source[i] = kNoPrimitive;
   Trace(kernels);
@@ -198,7 +198,7 @@ void Tile::Trace(const Kernels<Real>& kernels) {
   const PrimitiveKind kind = scene.objects.primitives[scalar_hits.front().primitive].kind();
   kernels.surfaces_of(kind)(geometry, rays.view(), hits.view(), batch, material.needs,
                             shaded_surfaces.output());
-  facing = kernels.face_light(light(), material, flat_surfaces(), hit_count, faces.data(),
+  facing = kernels.face_light(light(), material, flat_surfaces(), {}, hit_count, faces.data(),
                               incidence.output());
   const auto throughputs = parents.output();
   for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -224,7 +224,7 @@ KernelCase GenerateCase(const SharedTile& tile) {
             }
           },
           [tile](const Kernels<Real>& kernels) {
-            kernels.generate_primary(tile->camera, tile->x.data(), tile->y.data(), 0.5f, 0.5f,
+            kernels.generate_primary(tile->camera, tile->x.data(), tile->y.data(), 0.5f, 0.5f, {},
                                      kCount, tile->other_rays.output());
           }};
 }
@@ -314,7 +314,7 @@ KernelCase FaceCase(const SharedTile& tile) {
             }
           },
           [tile](const Kernels<Real>& kernels) {
-            kernels.face_light(tile->light(), tile->material, tile->flat_surfaces(),
+            kernels.face_light(tile->light(), tile->material, tile->flat_surfaces(), {},
                                tile->hit_count, tile->faces.data(), tile->incidence.output());
           }};
 }
@@ -334,7 +334,7 @@ KernelCase CompactCase(const SharedTile& tile) {
             }
           },
           [tile](const Kernels<Real>& kernels) {
-            kernels.generate_shadow(tile->light(), tile->flat_surfaces(), tile->faces.data(),
+            kernels.generate_shadow(tile->light(), tile->flat_surfaces(), {}, tile->faces.data(),
                                     tile->hit_count, tile->other_rays.output(),
                                     tile->occluded.data());
           }};

@@ -17,6 +17,7 @@
 
 #include "src/core/match.h"
 #include "src/lab/has_program.h"
+#include "src/scene/direction.h"
 
 namespace sheaf {
 namespace {
@@ -79,6 +80,19 @@ std::string TextureText(const Scene& scene, const Material& material, const Quad
   return fmt::format("texture {{ {} {} }}", Pigment(material, quad), Finish(scene, material));
 }
 
+// A light of POV-Ray's at a point that falls off with the square of the distance, open for more.
+void WriteFadingLight(Out out, const Vec3d& position, const Vec3d& colour) {
+  constexpr double kNear = 1e-3;
+  fmt::format_to(out, "light_source {{ {} rgb {} fade_distance {} fade_power 2", Vector(position),
+                 Vector(colour / (2 * kNear * kNear)), kNear);
+}
+
+// Across the square or, `around`, the ball whose edges or diameters these are.
+void WriteArea(Out out, const Vec3d& u, const Vec3d& v, const char* around) {
+  fmt::format_to(out, " area_light {}, {}, 17, 17 adaptive 1 jitter {}", Vector(u), Vector(v),
+                 around);
+}
+
 void WriteLight(Out out, const Scene& scene, const Light& light) {
   Vec3d colour = light.colour * light.intensity * scene.settings.exposure;
   Match(
@@ -86,6 +100,22 @@ void WriteLight(Out out, const Scene& scene, const Light& light) {
       [&](const DirectionalLight& sun) {
         fmt::format_to(out, "light_source {{ {} rgb {} parallel point_at 0", Vector(-sun.direction),
                        Vector(colour));
+      },
+      [&](const RectangleLight& rectangle) {
+        WriteFadingLight(out, rectangle.center, colour);
+        WriteArea(out, rectangle.u, rectangle.v, "area_illumination on");
+      },
+      [&](const DiskLight& disk) {
+        const Vec3d axis = Normalized(disk.direction);
+        const Vec3d aside = std::abs(axis.x) > 0.5 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0);
+        const Vec3d u = glm::normalize(glm::cross(axis, aside)), v = glm::cross(axis, u);
+        WriteFadingLight(out, disk.center, colour);
+        WriteArea(out, u * (2 * disk.radius), v * (2 * disk.radius),
+                  "circular area_illumination on");
+      },
+      [&](const SphereLight& sphere) {
+        WriteFadingLight(out, sphere.center, colour);
+        WriteArea(out, {2 * sphere.radius, 0, 0}, {0, 2 * sphere.radius, 0}, "circular orient");
       },
       [&](const PointLight& point) {
         // At distance d POV-Ray's light has 2 / (1 + (d / fade_distance)^fade_power) of its colour.

@@ -13,28 +13,15 @@
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
 #include "src/core/vec3.h"
+#include "src/render/compile_gloss.h"
+#include "src/render/compile_light.h"
+#include "src/render/compile_values.h"
 #include "src/scalar/sin_cos.h"
 #include "src/scene/decode_table.h"
 #include "src/scene/projection.h"
 
 namespace sheaf {
 namespace {
-
-template <typename Real>
-void Store(const glm::dvec3& from, Real (&to)[3]) {
-  // Adding 0 turns -0 into 0, so that no sum of colours depends on where it starts.
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<Real>(from[i]) + Real(0);
-}
-
-Vec3<double> ToVec3(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-glm::dvec3 ToGlm(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
-
-// GLM's own normalize multiplies by an inverse square root, whose bits are its business.
-glm::dvec3 Unit(const glm::dvec3& v) { return ToGlm(Normalize(ToVec3(v))); }
-glm::dvec3 CrossOf(const glm::dvec3& a, const glm::dvec3& b) {
-  return ToGlm(Cross(ToVec3(a), ToVec3(b)));
-}
-double LengthOf(const glm::dvec3& v) { return std::sqrt(Dot(ToVec3(v), ToVec3(v))); }
 
 template <typename Real>
 void StoreBaseColour(BaseColour kind, const Checker& checker, MaterialData<Real>& data) {
@@ -68,6 +55,8 @@ MaterialData<Real> CompileMaterial(const Material& material, const Colour& ambie
   Store(material.reflect, data.reflect);
   Store(material.transmit, data.transmit);
   data.ior = static_cast<Real>(material.ior);
+  // Alpha of GGX, as glTF and most others have it.
+  data.slope_width = static_cast<Real>(material.roughness * material.roughness);
   data.attenuates = material.attenuation != Colour(1.0);
   Store(material.attenuation, data.attenuation);
   data.attenuation_distance = static_cast<Real>(placement.Length(material.attenuation_distance));
@@ -173,81 +162,6 @@ void CompileFinish(const Material& material, CompiledScene<Real>& compiled,
   if (!AnyPositive(data.transmit)) data.ior = 1;
 }
 
-// The cosines of a spot light's two angles differ by at least this, as in KHR_lights_punctual.
-constexpr double kLeastConeRim = 0.001;
-
-// The largest distance from `p` to a point of the box.
-double Reach(const PointBounds& bounds, const glm::dvec3& p) {
-  return LengthOf(glm::max(glm::abs(bounds.low - p), glm::abs(bounds.high - p)));
-}
-
-// A light's falloff where lengths are placed ones. Both it and the light's colour are scaled by a
-// power of two that keeps the largest of the three near 1.
-void PlaceFalloff(const ScenePlacement& placement, Falloff& falloff, Colour& colour) {
-  if (placement.scale == 1) return;
-  falloff.linear /= placement.scale;
-  falloff.quadratic = falloff.quadratic / placement.scale / placement.scale;
-  const double largest = std::max({falloff.constant, falloff.linear, falloff.quadratic});
-  const double unit = std::ldexp(1.0, -std::ilogb(largest));
-  falloff = {falloff.constant * unit, falloff.linear * unit, falloff.quadratic * unit};
-  colour = colour * unit;
-}
-
-// Where all of a light is known but its place.
-struct LightSetting {
-  const ScenePlacement& placement;
-  const PointBounds& bounds;  // placed
-  Colour colour;
-};
-
-template <typename Real>
-void StoreSource(const DirectionalLight& sun, const LightSetting& setting, LightData<Real>& data) {
-  data.kind = LightKind::kDirectional;
-  Store(setting.colour, data.rgb);
-  Store(-Unit(sun.direction), data.vector);
-  data.falloff[0] = 1;
-}
-
-template <typename Real>
-void StoreSource(const PointLight& point, const LightSetting& setting, LightData<Real>& data) {
-  const PointBounds& bounds = setting.bounds;
-  const Vec3d position = setting.placement.Point(point.position);
-  const double diameter = LengthOf(bounds.high - bounds.low);
-  const bool is_near =
-      Reach(bounds, position) <= kMaxLightDiameters * diameter;  // false without objects
-  Falloff falloff = point.falloff;
-  Colour colour = setting.colour;
-  PlaceFalloff(setting.placement, falloff, colour);
-  Store(colour, data.rgb);
-  data.kind = is_near ? LightKind::kPointFromLight : LightKind::kPointFromSurface;
-  Store(position, data.vector);
-  data.falloff[0] = static_cast<Real>(falloff.constant);
-  data.falloff[1] = static_cast<Real>(falloff.linear);
-  data.falloff[2] = static_cast<Real>(falloff.quadratic);
-  if (!point.cone) return;
-  data.is_spot = 1;
-  Store(Unit(point.cone->direction), data.axis);
-  // cos * scale + offset is 1 at the inner angle and 0 at the outer.
-  const double inner = StrictCosDegrees(point.cone->inner);
-  const double outer = StrictCosDegrees(point.cone->outer);
-  const double scale = 1 / std::max(inner - outer, kLeastConeRim);
-  data.cone_scale = static_cast<Real>(scale);
-  data.cone_offset = static_cast<Real>(-outer * scale);
-}
-
-template <typename Real>
-LightData<Real> CompileLight(const Light& light, const Settings& settings,
-                             const ScenePlacement& placement, const PointBounds& bounds) {
-  LightData<Real> data{};
-  data.casts_shadows = light.casts_shadows;
-  const LightSetting setting{placement, bounds,
-                             light.colour * (light.intensity * settings.exposure)};
-  Match(
-      light.source, [&](const PointLight& point) { StoreSource(point, setting, data); },
-      [&](const DirectionalLight& sun) { StoreSource(sun, setting, data); });
-  return data;
-}
-
 // A pixel's step on the plane of a camera that has one; else 1.
 double PlaneStep(const ProjectionKind& kind, double number, int height) {
   if (kind.surface == ProjectionSurface::kSphere) return 1;
@@ -338,7 +252,8 @@ Colour AmbientLightOf(const Settings& settings) {
 }
 
 template <typename Real>
-CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement) {
+CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement,
+                                 Integrator integrator) {
   CompiledScene<Real> compiled;
   const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
   const Colour ambient = AmbientLightOf(scene.settings);
@@ -349,6 +264,8 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     }
     CompileFinish(material, compiled, data);
     if (scene.settings.shadows == Shadows::kThrough) Store(material.transmit, data.passes);
+    if (integrator == Integrator::kWhitted) data.slope_width = 0;
+    if (data.slope_width > 0) data.gloss = compiled.gloss.TableOf(data);
     data.needs = NeedsOf(data);
     compiled.materials.push_back(data);
   }
@@ -362,6 +279,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   }
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
+    if (integrator == Integrator::kWhitted) ShrinkToMiddle(compiled.lights.back());
   }
   if (scene.lights.empty()) {
     for (auto& material : compiled.materials) material.needs &= ~(kNeedsLights | kNeedsHighlight);
@@ -369,6 +287,20 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   Store(scene.settings.background, compiled.background);
   if (scene.settings.environment) CompileEnvironment(*scene.settings.environment, compiled);
   return compiled;
+}
+
+template <typename Real>
+void CompileLens(const Lens& lens, const Camera& camera, const glm::dvec3& right,
+                 const glm::dvec3& up, const ScenePlacement& placement, CameraData<Real>& data) {
+  const double radius = placement.Length(lens.aperture) / 2;
+  const double focus = lens.focus ? *lens.focus : LengthOf(camera.look_at - camera.eye);
+  data.lens = LensUse::kThin;
+  Store(right * radius, data.lens_right);
+  Store(up * radius, data.lens_up);
+  data.focus = static_cast<Real>(placement.Length(focus));
+  data.blades = static_cast<Real>(lens.blades);
+  const double turn = lens.rotation / 90;
+  data.blade_turn = static_cast<Real>(turn - 4 * std::floor(turn / 4));
 }
 
 template <typename Real>
@@ -394,6 +326,7 @@ CameraData<Real> CompileCamera(const Camera& camera, int width, int height,
   Store(forward, data.forward);
   Store(right * step, data.right);
   Store(up * step, data.up);
+  if (camera.lens) CompileLens(*camera.lens, camera, right, up, placement, data);
   data.half_width = static_cast<Real>(width) / 2;
   data.half_height = static_cast<Real>(height) / 2;
   return data;
@@ -418,8 +351,8 @@ PixelCone<Real> CompileCone(const CameraData<Real>& camera, double samples_a_pix
 
 template struct CompiledScene<float>;
 template struct CompiledScene<double>;
-template CompiledScene<float> CompileScene(const Scene&, const ScenePlacement&);
-template CompiledScene<double> CompileScene(const Scene&, const ScenePlacement&);
+template CompiledScene<float> CompileScene(const Scene&, const ScenePlacement&, Integrator);
+template CompiledScene<double> CompileScene(const Scene&, const ScenePlacement&, Integrator);
 template CameraData<float> CompileCamera(const Camera&, int, int, const ScenePlacement&);
 template CameraData<double> CompileCamera(const Camera&, int, int, const ScenePlacement&);
 template PixelCone<float> CompileCone(const CameraData<float>&, double);

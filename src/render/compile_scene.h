@@ -12,6 +12,7 @@
 #include "simd/shading.h"
 #include "src/render/build_mip_chain.h"
 #include "src/render/compile_geometry.h"
+#include "src/render/compile_gloss.h"
 #include "src/render/place_scene.h"
 #include "src/stream/frame_view.h"
 
@@ -22,6 +23,7 @@ template <typename Real>
 struct CompiledScene {
   CompiledGeometry<Real> objects;
   std::vector<MaterialData<Real>> materials;
+  GlossTables<Real> gloss;  // that the materials read
   std::vector<TextureData<Real>> textures;
   std::vector<std::shared_ptr<const Image>> images;  // that the textures show
   // Of images that are seen through Filter::kMip, which textures share.
@@ -40,7 +42,8 @@ Colour AmbientLightOf(const Settings& settings);
 
 // Without the tree: objects.data.BuildTree.
 template <typename Real>
-CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement = {});
+CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& placement = {},
+                                 Integrator integrator = Integrator::kDistributed);
 
 // The camera for a picture of width x height pixels, placed as the scene is.
 template <typename Real>

@@ -2,6 +2,8 @@
 
 #include <type_traits>
 
+#include "src/scalar/draw_sample.h"
+
 namespace sheaf {
 namespace {
 
@@ -38,7 +40,8 @@ void ParentOrder<Real>::Apply(const RayOutput<Real>& rays, const PathOutput<Real
 }
 
 template <typename Real>
-void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ParentOrder<Real>& order) {
+void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, std::uint32_t kind,
+                                   ParentOrder<Real>& order) {
   const std::uint32_t spawned = count_ - first_;
   const PathOutput<Real> paths = paths_.output(first_);
   // One bin leaves its rays in the order of their parents; several have to be merged into it.
@@ -46,6 +49,11 @@ void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ParentOrder<Re
   const std::uint32_t* pixel = parents.paths.pixel;
   for (std::uint32_t i = 0; i < spawned; ++i) {
     paths.pixel[i] = pixel ? pixel[paths.parent[i]] : paths.parent[i];
+  }
+  const std::uint32_t* seed = parents.paths.seed;
+  if (!seed || !paths.seed) return;
+  for (std::uint32_t i = 0; i < spawned; ++i) {
+    paths.seed[i] = scalar::ChildSeed(seed[paths.parent[i]], kind);
   }
 }
 

@@ -15,14 +15,16 @@ namespace sheaf {
 template <typename Real>
 struct RayBatch {
   RayView<Real> rays;
-  PathView<Real> paths;  // null pointers: ray i is of pixel i, with a throughput of 1
+  // Null pointers but for the seed: ray i is of pixel i, with a throughput of 1.
+  PathView<Real> paths;
   std::uint32_t count = 0;
 };
 
 // The fields of paths in frames whose materials have `needs`, as bits for Stream::Reserve.
 template <typename Real>
 constexpr std::uint64_t PathFieldsFor(std::uint32_t needs) {
-  return needs & kNeedsWidth ? ~std::uint64_t{0} : ~FieldBit(&PathView<Real>::width);
+  return ~((needs & kNeedsWidth ? 0 : FieldBit(&PathView<Real>::width)) |
+           (needs & kNeedsSeed ? 0 : FieldBit(&PathView<Real>::seed)));
 }
 
 // A sample's primary rays: one a pixel, from no surface, so that they need no paths.
@@ -36,7 +38,12 @@ class PrimaryRays {
     return rays_.output();
   }
 
-  RayBatch<Real> batch() const { return {rays_.view(), {}, count_}; }
+  // `seeds` may be null.
+  RayBatch<Real> batch(const std::uint32_t* seeds) const {
+    RayBatch<Real> batch{rays_.view(), {}, count_};
+    batch.paths.seed = seeds;
+    return batch;
+  }
   std::size_t bytes() const { return rays_.bytes(); }
 
  private:
@@ -91,8 +98,9 @@ class RayQueue {
     count_ += spawned;
     bins_ += spawned > 0;
   }
-  // Gives the rays since StartParents their pixels, and the order of their parents.
-  void FinishParents(const RayBatch<Real>& parents, ParentOrder<Real>& order);
+  // Gives the rays since StartParents their pixels, the order of their parents and, where those
+  // have any, seeds of their `kind` (simd/sample_terms.h).
+  void FinishParents(const RayBatch<Real>& parents, std::uint32_t kind, ParentOrder<Real>& order);
 
   std::uint32_t count() const { return count_; }
   std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }

@@ -34,6 +34,16 @@ struct CompiledFrame {
   FrameView<Real> view;
 };
 
+// Whether there is anything to draw random points from.
+template <typename Real>
+bool IsDistributed(const FrameView<Real>& frame) {
+  return frame.camera.lens != LensUse::kNone ||
+         std::any_of(frame.lights.begin(), frame.lights.end(),
+                     [](const auto& light) { return light.shape != LightShape::kPoint; }) ||
+         std::any_of(frame.materials.begin(), frame.materials.end(),
+                     [](const auto& material) { return material.slope_width > 0; });
+}
+
 template <typename Real>
 Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, const Camera& camera,
                                                           const RenderOptions& options,
@@ -44,7 +54,8 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   auto frame = std::make_unique<CompiledFrame<Real>>();
   CompiledScene<Real>& compiled = frame->scene;
   const ScenePlacement placement = PlaceScene(scene, camera);
-  compiled = CompileScene<Real>(scene, placement);
+  const Integrator integrator = options.integrator.value_or(scene.settings.integrator);
+  compiled = CompileScene<Real>(scene, placement, integrator);
   if (skips == Skips::kOff) {
     for (MaterialData<Real>& material : compiled.materials) material.needs |= kNeedsAll;
   }
@@ -52,7 +63,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   if (const Status built = geometry.BuildTree(options.threads); !built.ok()) {
     return Error{ErrorKind::kScene, built.error().message};
   }
-  for (const glm::dvec2& point : SamplePattern(options.samples)) {
+  for (const glm::dvec2& point : SamplePattern(options.samples, scene.settings.filter)) {
     frame->sample_x.push_back(static_cast<Real>(point.x));
     frame->sample_y.push_back(static_cast<Real>(point.y));
   }
@@ -79,6 +90,8 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
       std::any_of(compiled.materials.begin(), compiled.materials.end(),
                   [](const MaterialData<Real>& material) { return material.attenuates; }),
       static_cast<Real>(1 / placement.scale)};
+  if (integrator == Integrator::kWhitted) frame->view.camera.lens = LensUse::kNone;
+  frame->view.is_distributed = IsDistributed(frame->view);
   // With adaptive sampling a pixel's only sample stands for all of it.
   const double parts = frame->view.is_adaptive() ? 1 : options.samples;
   frame->view.cone = CompileCone(frame->view.camera, parts);

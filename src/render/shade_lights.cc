@@ -1,6 +1,7 @@
 #include "src/render/shade_lights.h"
 
 #include "simd/query.h"
+#include "simd/sample_terms.h"
 #include "src/scalar/pass_light.h"
 
 namespace sheaf {
@@ -10,20 +11,40 @@ void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceV
                               std::uint32_t count, const ColourOutput<Real>& colours) {
   if (frame_.lights.empty()) return;
   lit_.Reserve(StreamCapacity(count));
-  incidence_.Reserve(count);
-  for (const LightData<Real>& light : frame_.lights) {
-    const std::uint32_t facing =
-        kernels_.face_light(light, material, surfaces, count, lit_.data(), incidence_.output());
-    clock_.Charge(Phase::kShade, count, count);
-    if (facing == 0) continue;
-    const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
-    if (lit == 0) continue;
-    const bool has_shares = frame_.passes_light && light.casts_shadows;
-    const ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
-    kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), shares, count,
-                         colours);
-    clock_.Charge(Phase::kShade, lit, count);
+  constexpr std::uint64_t kEnds = FieldBit(&IncidenceView<Real>::end_x) |
+                                  FieldBit(&IncidenceView<Real>::end_y) |
+                                  FieldBit(&IncidenceView<Real>::end_z);
+  for (std::size_t i = 0; i < frame_.lights.size(); ++i) {
+    const LightData<Real>& light = frame_.lights[i];
+    if (light.shape == LightShape::kPoint) {
+      incidence_.Reserve(count, ~kEnds);
+      ShadeOne(light, material, surfaces, {}, count, colours);
+      continue;
+    }
+    incidence_.Reserve(count);
+    const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
+    for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
+      const SampleView<Real> points = samples_.DrawForSurfaces(dimension, draw, light.samples);
+      ShadeOne(light, material, surfaces, points, count, colours);
+    }
   }
+}
+
+template <typename Real>
+void LightShader<Real>::ShadeOne(const LightData<Real>& light, const MaterialData<Real>& material,
+                                 const SurfaceView<Real>& surfaces, const SampleView<Real>& points,
+                                 std::uint32_t count, const ColourOutput<Real>& colours) {
+  const std::uint32_t facing = kernels_.face_light(light, material, surfaces, points, count,
+                                                   lit_.data(), incidence_.output());
+  clock_.Charge(Phase::kShade, count, count);
+  if (facing == 0) return;
+  const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
+  if (lit == 0) return;
+  const bool has_shares = frame_.passes_light && light.casts_shadows;
+  const ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
+  kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), shares, count,
+                       colours);
+  clock_.Charge(Phase::kShade, lit, count);
 }
 
 template <typename Real>
@@ -33,8 +54,9 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   shadow_rays_.Reserve(count);
   surface_of_ray_.Reserve(StreamCapacity(count));
   occluded_.Reserve(StreamCapacity(count));
-  const std::uint32_t size = kernels_.generate_shadow(
-      light, surfaces, lit_.data(), count, shadow_rays_.output(), surface_of_ray_.data());
+  const std::uint32_t size =
+      kernels_.generate_shadow(light, surfaces, incidence_.view(), lit_.data(), count,
+                               shadow_rays_.output(), surface_of_ray_.data());
   rays_.shadow += size;
   RayIntervals<Real> intervals;
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;

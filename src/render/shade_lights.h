@@ -12,6 +12,7 @@
 #include "src/core/aligned_array.h"
 #include "src/render/pass_light.h"
 #include "src/render/phase_clock.h"
+#include "src/render/sample_source.h"
 #include "src/stream/frame_view.h"
 #include "src/stream/stream.h"
 
@@ -21,11 +22,17 @@ namespace sheaf {
 template <typename Real>
 class LightShader {
  public:
-  LightShader(const FrameView<Real>& frame, const Kernels<Real>& kernels, RayCounts& rays,
-              PhaseClock& clock)
-      : frame_(frame), kernels_(kernels), rays_(rays), clock_(clock), passer_(frame, kernels) {}
+  LightShader(const FrameView<Real>& frame, const Kernels<Real>& kernels,
+              SampleSource<Real>& samples, RayCounts& rays, PhaseClock& clock)
+      : frame_(frame),
+        kernels_(kernels),
+        samples_(samples),
+        rays_(rays),
+        clock_(clock),
+        passer_(frame, kernels) {}
 
-  // Adds to colours[0, count) what each light gives the surfaces that it reaches.
+  // Adds to colours[0, count) what each light gives the surfaces that it reaches. Where lights are
+  // drawn from, `samples` has been told of the surfaces.
   void Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
              std::uint32_t count, const ColourOutput<Real>& colours);
   std::size_t bytes() const {
@@ -34,6 +41,11 @@ class LightShader {
   }
 
  private:
+  // What the light in work gives, of a light with a size at these points of it.
+  void ShadeOne(const LightData<Real>& light, const MaterialData<Real>& material,
+                const SurfaceView<Real>& surfaces, const SampleView<Real>& points,
+                std::uint32_t count, const ColourOutput<Real>& colours);
+
   // Returns how many surfaces the light reaches.
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
@@ -43,6 +55,7 @@ class LightShader {
 
   const FrameView<Real>& frame_;
   const Kernels<Real>& kernels_;
+  SampleSource<Real>& samples_;
   RayCounts& rays_;
   PhaseClock& clock_;
 

@@ -1,11 +1,11 @@
 #include "src/render/tile_renderer.h"
 
 #include <algorithm>
-#include <span>
 #include <type_traits>
 #include <utility>
 
 #include "simd/query.h"
+#include "simd/sample_terms.h"
 #include "src/render/attenuate_paths.h"
 #include "src/render/fill_environment.h"
 #include "src/render/find_surfaces.h"
@@ -25,9 +25,9 @@ Kernels<Real> KernelsFor(const RenderOptions& options) {
 }
 
 template <typename Real>
-std::uint32_t NeedsOfAny(std::span<const MaterialData<Real>> materials) {
-  std::uint32_t needs = 0;
-  for (const MaterialData<Real>& material : materials) needs |= material.needs;
+std::uint32_t NeedsOfAny(const FrameView<Real>& frame) {
+  std::uint32_t needs = frame.is_distributed ? kNeedsSeed : 0;
+  for (const MaterialData<Real>& material : frame.materials) needs |= material.needs;
   return needs;
 }
 
@@ -59,8 +59,10 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
   GeneratePrimary(pixels, sample);
   next_reflected_.Reset(pixels.count);
   next_refracted_.Reset(pixels.count);
-  Trace(primary_.batch());
-  Shade(primary_.batch(), sample_, recorder);
+  const RayBatch<Real> primary =
+      primary_.batch(frame_.is_distributed ? samples_.pixel_seeds() : nullptr);
+  Trace(primary);
+  Shade(primary, sample_, recorder);
   for (int depth = 1; next_reflected_.count() + next_refracted_.count() > 0; ++depth) {
     std::swap(reflected_, next_reflected_);
     std::swap(refracted_, next_refracted_);
@@ -93,8 +95,11 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
 template <typename Real>
 void TileRenderer<Real>::GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample) {
   sample_.Reserve(pixels.count);
+  if (frame_.is_distributed) samples_.StartSample(pixels, sample);
+  const bool has_lens = frame_.camera.lens != LensUse::kNone;
+  const auto lens = has_lens ? samples_.DrawForPixels(kLensDimension) : SampleView<Real>{};
   kernels_.generate_primary(frame_.camera, pixels.x.data(), pixels.y.data(),
-                            frame_.sample_x[sample], frame_.sample_y[sample], pixels.count,
+                            frame_.sample_x[sample], frame_.sample_y[sample], lens, pixels.count,
                             primary_.Start(pixels.count));
   rays_.primary += pixels.count;
   clock_.Charge(Phase::kGenerate, pixels.count, pixels.count);
@@ -132,19 +137,25 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& 
     const ColourOutput<Real> shaded = is_all ? seen : surface_colours_.output();
     kernels_.shade_ambient(material, surfaces, count, shaded);
     clock_.Charge(Phase::kShade, count, count);
+    if (frame_.is_distributed) samples_.StartSurfaces(batch.paths, surfaces, count);
     if (material.needs & kNeedsLights) lights_.Shade(material, surfaces, count, shaded);
     if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, seen);
     clock_.Charge(Phase::kAccumulate);
     if (material.needs & kNeedsChildren) Spawn(batch.paths, material, surfaces, count);
   }
-  next_reflected_.FinishParents(batch, parent_order_);
-  next_refracted_.FinishParents(batch, parent_order_);
+  next_reflected_.FinishParents(batch, kReflectedSeed, parent_order_);
+  next_refracted_.FinishParents(batch, kRefractedSeed, parent_order_);
   clock_.Charge(Phase::kSpawn);
 }
 
 template <typename Real>
 void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t count) {
+  if (material.needs & kNeedsGloss) {
+    const SampleView<Real> points = samples_.DrawForSurfaces(kGlossDimension);
+    kernels_.draw_facets(material, surfaces, points, count, surfaces_.output());
+    clock_.Charge(Phase::kSpawn, count, count);
+  }
   next_reflected_.MakeRoom(path_fields_);
   if (material.needs & kNeedsTransmission) next_refracted_.MakeRoom(path_fields_);
   const SpawnCounts spawned = kernels_.spawn_rays(
@@ -207,7 +218,7 @@ template <typename Real>
 std::size_t TileRenderer<Real>::buffer_bytes() const {
   std::size_t sum = 0;
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
-  add(binner_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
+  add(binner_, samples_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
   add(reflected_, refracted_, next_reflected_, next_refracted_, parent_order_);
   add(hits_, surfaces_, texels_, ray_colours_, surface_colours_);
   return sum;
@@ -225,11 +236,12 @@ TileRenderer<Real>::TileRenderer(const FrameView<Real>& frame, const Kernels<Rea
       frame_(frame),
       kernels_(kernels),
       stop_(stop),
-      surface_fields_(SurfaceFieldsFor<Real>(NeedsOfAny(frame.materials))),
-      texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame.materials), frame.textures.size())),
-      path_fields_(PathFieldsFor<Real>(NeedsOfAny(frame.materials))),
+      surface_fields_(SurfaceFieldsFor<Real>(NeedsOfAny(frame))),
+      texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame), frame.textures.size())),
+      path_fields_(PathFieldsFor<Real>(NeedsOfAny(frame))),
       binner_(frame.materials.size()),
-      lights_(frame, kernels_, rays_, clock_),
+      samples_(kernels_),
+      lights_(frame, kernels_, samples_, rays_, clock_),
       first_hits_(frame, options.layers) {}
 
 template class TileRenderer<float>;

@@ -16,6 +16,7 @@
 #include "src/render/pixel_order.h"
 #include "src/render/ray_queue.h"
 #include "src/render/record_first_hits.h"
+#include "src/render/sample_source.h"
 #include "src/render/shade_lights.h"
 #include "src/render/tile_worker.h"
 #include "src/stream/frame_view.h"
@@ -62,6 +63,7 @@ class TileRenderer : public TileWorker {
   const std::uint64_t surface_fields_, texel_fields_,
       path_fields_;  // that the frame's materials read
   HitBinner binner_;
+  SampleSource<Real> samples_;
   LightShader<Real> lights_;
 
   PixelOrder<Real> order_;             // of the tile, or of it and its neighbours

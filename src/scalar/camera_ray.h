@@ -7,12 +7,14 @@
 #include "simd/shading.h"
 #include "src/scalar/ray.h"
 #include "src/scalar/sin_cos.h"
+#include "src/scalar/warp.h"
 
 namespace sheaf::scalar {
 
-// Pixel (x, y), counted from the top left, at the point (sx, sy) in [0, 1)^2 of it.
+// Pixel (x, y), counted from the top left, at the point (sx, sy) in [0, 1)^2 of it, through the
+// middle of the lens.
 template <typename Real>
-Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Real sy) {
+Ray<Real> PinholeRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Real sy) {
   const Vec3<Real> eye = FromArray(camera.eye), forward = FromArray(camera.forward);
   // Counted from the picture's centre, where half pixels are exact.
   const Real a = (x + sx) - camera.half_width;
@@ -36,6 +38,21 @@ Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Rea
   const SinCos<Real> angle = SinCosOf(distance * camera.turns_y);
   const Real scale = distance > 0 ? angle.sin / distance : Real(0);
   return {eye, Normalize(forward * angle.cos + across() * scale)};
+}
+
+// The same through a point of the lens: it meets the other in the plane that is sharp.
+template <typename Real>
+Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Real sy,
+                    SamplePoint<Real> lens = {}) {
+  Ray<Real> ray = PinholeRay(camera, x, y, sx, sy);
+  if (camera.lens == LensUse::kNone) return ray;
+  const PlanePoint<Real> p =
+      camera.blades > 0 ? PolygonPoint(camera.blades, camera.blade_turn, lens) : DiskPoint(lens);
+  const Vec3<Real> aside = FromArray(camera.lens_right) * p.x + FromArray(camera.lens_up) * p.y;
+  const Real length = camera.focus / Dot(ray.direction, FromArray(camera.forward));
+  ray.direction = Normalize(ray.direction * length - aside);
+  ray.origin = ray.origin + aside;
+  return ray;
 }
 
 }  // namespace sheaf::scalar

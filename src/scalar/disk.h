@@ -12,6 +12,7 @@
 #include "simd/primitives.h"
 #include "simd/query.h"
 #include "simd/roundoffs.h"
+#include "src/scalar/frame.h"
 #include "src/scalar/ray.h"
 #include "src/scalar/surface.h"
 
@@ -46,21 +47,6 @@ SHEAF_INLINE W PlaneT(Vec3<W> o, Vec3<W> d, Vec3<W> c, Vec3<W> n) {
   slope.Add(n.z * d.z);
   return height.value() / slope.value();
 }
-
-// Two unit vectors that make a right-handed frame with the unit vector n: Duff et al., "Building an
-// Orthonormal Basis, Revisited" (JCGT 6(1), 2017).
-template <typename W>
-struct Frame {
-  Vec3<W> x, y;
-
-  explicit Frame(Vec3<W> n) {
-    const W sign = std::copysign(W(1), n.z);
-    const W a = -1 / (sign + n.z);
-    const W b = (n.x * n.y) * a;
-    x = {1 + sign * ((n.x * n.x) * a), sign * b, -(sign * n.x)};
-    y = {b, sign + (n.y * n.y) * a, -n.y};
-  }
-};
 
 template <typename Real>
 struct DiskHit {

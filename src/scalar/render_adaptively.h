@@ -29,9 +29,7 @@ void RenderAdaptively(const FrameView<Real>& frame, const PixelRect& tile,
     return hits[static_cast<std::size_t>((y - around.y0) * around.width() + (x - around.x0))];
   };
   const auto sample = [&](int x, int y, std::size_t i, FirstHit<Real>* first) {
-    const Ray<Real> ray = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
-                                    frame.sample_x[i], frame.sample_y[i]);
-    return RenderSample(frame, ray, scratch, tally, stop, first);
+    return RenderSample(frame, x, y, i, scratch, tally, stop, first);
   };
   for (int y = around.y0; y < around.y1; ++y) {
     for (int x = around.x0; x < around.x1 && !stop.load(std::memory_order_relaxed); ++x) {

@@ -34,24 +34,46 @@ struct PixelScratch {
   std::vector<Path<Real>> paths, reflected, refracted;
 };
 
+// What random numbers are drawn by: a ray's seed, and which of the pixel's samples it is of.
+struct SampleKey {
+  std::uint32_t seed, index;
+};
+
+// The light of one point of a light with a size, or all of another light. `here` is the material as
+// it is at the surface, where its base colour is `base`.
+template <typename Real>
+Vec3<Real> LightFrom(const FrameView<Real>& frame, const LightData<Real>& light,
+                     SamplePoint<Real> point, const MaterialData<Real>& here, Vec3<Real> base,
+                     const Surface<Real>& surface, RayCounts& tally) {
+  const Incidence<Real> incidence = IncidenceOf(light, surface, point);
+  if (!incidence.reaches) return {0, 0, 0};
+  Vec3<Real> share = {1, 1, 1};
+  if (light.casts_shadows) {
+    ++tally.shadow;
+    share = LightShare(frame, ShadowRay(light, surface, incidence));
+    if (!IsLight(share)) return {0, 0, 0};
+  }
+  return MultiplyColours(LitBy(light, here, surface, base, incidence), share);
+}
+
 // `here` is the material as it is at the surface, where its base colour is `base`.
 template <typename Real>
 Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
                       const MaterialData<Real>& here, Vec3<Real> base, const Surface<Real>& surface,
-                      RayCounts& tally) {
+                      SampleKey key, RayCounts& tally) {
   if (!HasLocalLight(material, surface)) return {0, 0, 0};
   Vec3<Real> colour = AmbientLight(here, base);
   if (!ReactsToLight(material)) return colour;
-  for (const LightData<Real>& light : frame.lights) {
-    const Incidence<Real> incidence = IncidenceOf(light, surface);
-    if (!incidence.reaches) continue;
-    Vec3<Real> share = {1, 1, 1};
-    if (light.casts_shadows) {
-      ++tally.shadow;
-      share = LightShare(frame, ShadowRay(light, surface, incidence));
-      if (!IsLight(share)) continue;
+  for (std::size_t i = 0; i < frame.lights.size(); ++i) {
+    const LightData<Real>& light = frame.lights[i];
+    const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
+    for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
+      SamplePoint<Real> point;
+      if (light.shape != LightShape::kPoint) {
+        point = DrawSample<Real>(key.seed, key.index * light.samples + draw, dimension);
+      }
+      colour = colour + LightFrom(frame, light, point, here, base, surface, tally);
     }
-    colour = colour + MultiplyColours(LitBy(light, here, surface, base, incidence), share);
   }
   return colour;
 }
@@ -81,14 +103,29 @@ void Accumulate(Vec3<Real>& sum, const Real (&throughput)[3], Vec3<Real> colour)
         Vec3<Real>{throughput[0] * colour.x, throughput[1] * colour.y, throughput[2] * colour.z};
 }
 
-// The colour of one sample: breadth first from its primary ray, which has depth 0. Leaves in
-// `first`, unless that is null, what the primary ray hit.
+// The path of the primary ray of the sample `index` of a pixel.
 template <typename Real>
-Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
+Path<Real> PrimaryPath(const FrameView<Real>& frame, int x, int y, std::uint32_t index) {
+  Path<Real> path{{}, {1, 1, 1}, frame.cone.width};
+  SamplePoint<Real> lens;
+  if (frame.is_distributed) {
+    path.seed = PixelSeed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    lens = DrawSample<Real>(path.seed, index, kLensDimension);
+  }
+  path.ray = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
+                       frame.sample_x[index], frame.sample_y[index], lens);
+  return path;
+}
+
+// The colour of the sample `index` of a pixel: breadth first from its primary ray, which has depth
+// 0. Leaves in `first`, unless that is null, what the primary ray hit.
+template <typename Real>
+Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t sample,
                         PixelScratch<Real>& scratch, RayCounts& tally,
                         const std::atomic<bool>& stop, FirstHit<Real>* first = nullptr) {
+  const auto index = static_cast<std::uint32_t>(sample);
   Vec3<Real> sum = {0, 0, 0};
-  scratch.paths.assign(1, {primary, {1, 1, 1}, frame.cone.width});
+  scratch.paths.assign(1, PrimaryPath(frame, x, y, index));
   ++tally.primary;
   for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
     scratch.reflected.clear();
@@ -105,7 +142,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
       }
       const MaterialData<Real>& material =
           frame.materials[frame.primitives[hit.primitive].material];
-      const Surface<Real> surface = ShadedSurface(frame, material, path, hit);
+      Surface<Real> surface = ShadedSurface(frame, material, path, hit);
       const Vec3<Real> base = BaseColourAt(material, frame.textures, surface);
       std::optional<MaterialData<Real>> varied;
       if (material.needs & kNeedsTerms) {
@@ -119,9 +156,20 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, const Ray<Real>& primary,
         first->albedo = base;
         first->primitive = hit.primitive;
       }
-      Accumulate(sum, path.throughput, LocalLight(frame, material, here, base, surface, tally));
+      const SampleKey key{path.seed, index};
+      Accumulate(sum, path.throughput,
+                 LocalLight(frame, material, here, base, surface, key, tally));
       if (!SpawnsRays(here)) continue;
-      const Spawned<Real> spawned = Spawn(here, surface, path.throughput);
+      if (material.slope_width > 0) {
+        const auto point = DrawSample<Real>(key.seed, key.index, kGlossDimension);
+        surface.facet = DrawFacet(material.slope_width, surface, point);
+        surface.gloss = GlossAt(material, surface);
+      }
+      Spawned<Real> spawned = Spawn(here, surface, path.throughput);
+      if (frame.is_distributed) {
+        spawned.reflected.seed = ChildSeed(path.seed, kReflectedSeed);
+        spawned.refracted.seed = ChildSeed(path.seed, kRefractedSeed);
+      }
       if (spawned.reflected.counts(frame.min_throughput))
         scratch.reflected.push_back(spawned.reflected);
       if (spawned.refracted.counts(frame.min_throughput))
@@ -148,9 +196,7 @@ Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<
   Vec3<Real> sum = {0, 0, 0};
   const std::size_t samples = frame.sample_x.size();
   for (std::size_t i = 0; i < samples; ++i) {
-    const Ray<Real> primary = CameraRay(frame.camera, static_cast<Real>(x), static_cast<Real>(y),
-                                        frame.sample_x[i], frame.sample_y[i]);
-    sum = sum + RenderSample(frame, primary, scratch, tally, stop, i == 0 ? first : nullptr);
+    sum = sum + RenderSample(frame, x, y, i, scratch, tally, stop, i == 0 ? first : nullptr);
   }
   return sum / static_cast<Real>(samples);
 }

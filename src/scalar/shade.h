@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "simd/shading.h"
 #include "src/scalar/filter_checker.h"
+#include "src/scalar/incidence.h"
 #include "src/scalar/pow.h"
 #include "src/scalar/sample_texture.h"
 #include "src/scalar/surface.h"
@@ -63,54 +63,6 @@ Vec3<Real> BaseColourAt(const MaterialData<Real>& material,
 template <typename Real>
 Vec3<Real> AmbientLight(const MaterialData<Real>& material, Vec3<Real> base) {
   return MultiplyColours(FromArray(material.ambient), base) + FromArray(material.emission);
-}
-
-// A light as the surface sees it.
-template <typename Real>
-struct Incidence {
-  Vec3<Real> to_light;  // from the surface to the light's position; a directional light's vector
-  Vec3<Real> l;         // unit
-  Real n_dot_l;         // 0 where the light lies on the point or is too far: it gives nothing
-  Real attenuation;     // 1 / (kc + kl r + kq r^2), of a spot light times its cone's share
-  bool reaches;         // whether the surface faces the light, within the cone of a spot light
-};
-
-// A spot light's share toward a surface that sees it along `l`: KHR_lights_punctual, "Inner and
-// Outer Cone Angles".
-template <typename Real>
-Real ConeShare(const LightData<Real>& light, Vec3<Real> l) {
-  const Real share = -Dot(l, FromArray(light.axis)) * light.cone_scale + light.cone_offset;
-  const Real clamped = share > 0 ? (share < 1 ? share : Real(1)) : Real(0);
-  return clamped * clamped;
-}
-
-template <typename Real>
-Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& surface) {
-  Incidence<Real> incidence;
-  Real squared = 0, distance = 0;
-  incidence.to_light = FromArray(light.vector);
-  incidence.l = incidence.to_light;
-  if (light.kind != LightKind::kDirectional) {
-    incidence.to_light = incidence.to_light - surface.position;
-    squared = Dot(incidence.to_light, incidence.to_light);
-    distance = std::sqrt(squared);
-    incidence.l = incidence.to_light / distance;
-  }
-  incidence.n_dot_l = Dot(surface.normal, incidence.l);
-  // The length of l is 1 only where the square is a normal number; an infinite one makes l 0.
-  const bool is_at_point =
-      light.kind != LightKind::kDirectional && !(squared >= std::numeric_limits<Real>::min());
-  if (is_at_point) incidence.n_dot_l = 0;
-  incidence.attenuation =
-      1 / ((light.falloff[0] + light.falloff[1] * distance) + light.falloff[2] * squared);
-  // Nor does a shading normal light the back of a face, but where the face is bent.
-  incidence.reaches = incidence.n_dot_l > 0 && Dot(surface.face, incidence.l) > -surface.bend;
-  if (light.is_spot) {
-    const Real share = ConeShare(light, incidence.l);
-    incidence.attenuation = incidence.attenuation * share;
-    incidence.reaches = incidence.reaches && share > 0;
-  }
-  return incidence;
 }
 
 // What one unoccluded light adds that reaches the surface. The highlight has the light's colour;

@@ -23,7 +23,9 @@ Ray<Real> ShadowRay(const LightData<Real>& light, const Surface<Real>& surface,
   }
   const Vec3<Real> start = surface.shadow_end + surface.face * surface.offset;
   if (light.kind == LightKind::kDirectional) return {start, incidence.to_light, surface.source};
-  return {start, FromArray(light.vector) - start, surface.source, kDefaultTMin<Real>, Real(1)};
+  const bool is_point = light.shape == LightShape::kPoint;
+  const Vec3<Real> end = is_point ? FromArray(light.vector) : incidence.end;
+  return {start, end - start, surface.source, kDefaultTMin<Real>, Real(1)};
 }
 
 }  // namespace sheaf::scalar

@@ -5,6 +5,8 @@
 
 #include "simd/query.h"
 #include "simd/shading.h"
+#include "src/scalar/microfacet.h"
+#include "src/scalar/ray.h"
 #include "src/scalar/shade.h"
 
 namespace sheaf::scalar {
@@ -47,7 +49,8 @@ template <typename Real>
 struct Path {
   Ray<Real> ray;
   Real throughput[3];
-  Real width = 0;  // of the ray's cone where it starts
+  Real width = 0;          // of the ray's cone where it starts
+  std::uint32_t seed = 0;  // of its random numbers
 
   // Whether it is traced: not where all it could add is weighed by `min_throughput` or less (Hall
   // and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds
@@ -74,10 +77,19 @@ Vec3<Real> KeepOnSide(const Surface<Real>& surface, Vec3<Real> direction, Real s
   return height * side < 0 ? direction - f * (2 * height) : direction;
 }
 
+// What is left of light that a rough surface sends along the unit vector `direction`, on the side
+// of its normal that `side` names.
+template <typename Real>
+Real GlossShare(const MaterialData<Real>& material, const Surface<Real>& surface,
+                Vec3<Real> direction, Real side) {
+  return Unmasked(Dot(direction, surface.normal) * side, material.slope_width) * surface.gloss;
+}
+
 template <typename Real>
 Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
                     const Real (&throughput)[3]) {
-  const Vec3<Real> n = surface.normal, d = surface.direction;
+  const bool is_rough = material.slope_width > 0;
+  const Vec3<Real> n = is_rough ? surface.facet : surface.normal, d = surface.direction;
   const Real towards = -Dot(n, d);
   const Real cos_i = towards > 0 ? towards : Real(0);
   const Real eta = surface.inside() ? material.ior : 1 / material.ior;
@@ -99,6 +111,14 @@ Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& sur
     const Real transmit = split.is_total ? Real(0) : material.transmit[i] * (1 - split.reflectance);
     spawned.reflected.throughput[i] = throughput[i] * reflect;
     spawned.refracted.throughput[i] = throughput[i] * transmit;
+  }
+  if (is_rough) {
+    const Real reflected = GlossShare(material, surface, spawned.reflected.ray.direction, Real(1));
+    const Real refracted = GlossShare(material, surface, spawned.refracted.ray.direction, Real(-1));
+    for (int i = 0; i < 3; ++i) {
+      spawned.reflected.throughput[i] = spawned.reflected.throughput[i] * reflected;
+      spawned.refracted.throughput[i] = spawned.refracted.throughput[i] * refracted;
+    }
   }
   return spawned;
 }

@@ -29,6 +29,10 @@ struct Surface {
   std::uint32_t source;
   Real width = 0;                         // of the ray's cone there
   Real footprint_u = 0, footprint_v = 0;  // how much of u and v the cone covers
+  // Of a rough surface: the normal that rays are mirrored and bent at, and what their throughputs
+  // are multiplied with besides.
+  Vec3<Real> facet = {0, 0, 0};
+  Real gloss = 1;
 
   bool inside() const { return (source & kInsideBit) != 0; }
   std::uint32_t primitive() const { return source & ~kInsideBit; }

@@ -17,11 +17,15 @@ Vec3d Normalized(const Vec3d& vector) {
   return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
+bool SpansPlane(const Vec3d& u, const Vec3d& v) {
+  if (!GivesDirection(u) || !GivesDirection(v)) return false;
+  return glm::length(glm::cross(Normalized(u), Normalized(v))) >= 1e-6;
+}
+
 ViewFault FindViewFault(const Camera& camera) {
   const Vec3d view = camera.look_at - camera.eye;
   if (!GivesDirection(view)) return ViewFault::kNoDirection;
-  const double sine = glm::length(glm::cross(Normalized(view), Normalized(camera.up)));
-  return sine < 1e-6 ? ViewFault::kParallelToUp : ViewFault::kNone;
+  return SpansPlane(view, camera.up) ? ViewFault::kNone : ViewFault::kParallelToUp;
 }
 
 const char* TextOf(ViewFault fault) {

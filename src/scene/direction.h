@@ -12,6 +12,9 @@ double LargestComponent(const Vec3d& vector);
 // Whether the largest component is at least 1e-30 in size; false for NaN there.
 bool GivesDirection(const Vec3d& vector);
 
+// Whether both give directions, of which neither is the other's or its opposite.
+bool SpansPlane(const Vec3d& u, const Vec3d& v);
+
 // Unit length, of a vector that gives a direction.
 Vec3d Normalized(const Vec3d& vector);
 

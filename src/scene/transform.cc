@@ -55,7 +55,21 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
           point.position = transform.Point(point.position);
           if (point.cone) point.cone->direction = transform.Vector(point.cone->direction);
         },
-        [&](DirectionalLight& sun) { sun.direction = transform.Vector(sun.direction); });
+        [&](DirectionalLight& sun) { sun.direction = transform.Vector(sun.direction); },
+        [&](RectangleLight& rectangle) {
+          rectangle.center = transform.Point(rectangle.center);
+          rectangle.u = transform.Vector(rectangle.u);
+          rectangle.v = transform.Vector(rectangle.v);
+        },
+        [&](DiskLight& disk) {
+          disk.center = transform.Point(disk.center);
+          disk.radius *= transform.Scale();
+          disk.direction = transform.Vector(disk.direction);
+        },
+        [&](SphereLight& sphere) {
+          sphere.center = transform.Point(sphere.center);
+          sphere.radius *= transform.Scale();
+        });
   }
   for (Camera& camera : scene->cameras) {
     camera.eye = transform.Point(camera.eye);
@@ -64,6 +78,10 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     const bool has_length = KindOf(camera.projection).unit == ProjectionUnit::kLength;
     const double lens = has_length ? transform.Scale() : 1;
     SetParameter(camera.projection, ParameterOf(camera.projection) * lens);
+    if (camera.lens) {
+      camera.lens->aperture *= transform.Scale();
+      if (camera.lens->focus) *camera.lens->focus *= transform.Scale();
+    }
     for (CameraKey& key : camera.path) {
       key.eye = transform.Point(key.eye);
       key.look_at = transform.Point(key.look_at);

@@ -41,6 +41,8 @@ constexpr Range kPositive{kSmallest, kLargest, "a finite float above 0"};
 constexpr Range kShare{0, 1, "a number in [0, 1]"};
 constexpr Range kTurn{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr Range kAngle{0, 90, "a number in [0, 90]"};
+constexpr Range kHalfTurn{0, 180, "a number in [0, 180]"};
+constexpr Range kPositiveLength{1e-30, kMaxCoordinate, "a number in [1e-30, 1e30]"};
 
 // The first thing that is wrong with a part of a scene, if any.
 class FirstFault {
@@ -130,6 +132,7 @@ void Check(const Material& material, FirstFault& fault) {
   fault.Components("reflect", material.reflect, kShare);
   fault.Components("transmit", material.transmit, kShare);
   fault.Number("ior", material.ior, kPositive);
+  fault.Number("roughness", material.roughness, kShare);
   fault.Components("attenuation", material.attenuation, kShare);
   fault.Number("attenuation_distance", material.attenuation_distance, kPositive);
   if (const auto& gloss = material.metallic_roughness) {
@@ -198,9 +201,30 @@ void CheckSource(const PointLight& point, FirstFault& fault) {
 void Check(const Light& light, FirstFault& fault) {
   Match(
       light.source, [&](const PointLight& point) { CheckSource(point, fault); },
-      [&](const DirectionalLight& sun) { fault.Direction("direction", sun.direction); });
+      [&](const DirectionalLight& sun) {
+        fault.Direction("direction", sun.direction);
+        fault.Number("angle", sun.angle, kHalfTurn);
+      },
+      [&](const RectangleLight& rectangle) {
+        fault.Components("center", rectangle.center, kPlace);
+        fault.Components("u", rectangle.u, kPlace);
+        fault.Components("v", rectangle.v, kPlace);
+        if (!fault.found() && !SpansPlane(rectangle.u, rectangle.v)) {
+          fault.Fail("u and v span no rectangle");
+        }
+      },
+      [&](const DiskLight& disk) {
+        fault.Components("center", disk.center, kPlace);
+        fault.Number("radius", disk.radius, kPositiveLength);
+        fault.Direction("direction", disk.direction);
+      },
+      [&](const SphereLight& sphere) {
+        fault.Components("center", sphere.center, kPlace);
+        fault.Number("radius", sphere.radius, kPositiveLength);
+      });
   fault.Components("colour", light.colour, kAtLeastZero);
   fault.Number("intensity", light.intensity, kAtLeastZero);
+  fault.Number("samples", light.samples, {1, kMaxLightSamples, "a number in [1, 1024]"});
 }
 
 void CheckPath(const Camera& camera, FirstFault& fault) {
@@ -217,6 +241,16 @@ void CheckPath(const Camera& camera, FirstFault& fault) {
   }
 }
 
+void Check(const Lens& lens, const ProjectionKind& kind, FirstFault& fault) {
+  if (kind.surface != ProjectionSurface::kPlane) {
+    fault.Fail(fmt::format("lens: {} cameras have none", kind.name));
+  }
+  fault.Number("lens.aperture", lens.aperture, kPositiveLength);
+  if (lens.focus) fault.Number("lens.focus", *lens.focus, kPositiveLength);
+  if (lens.blades != 0) fault.Number("lens.blades", lens.blades, {3, 64, "0 or in [3, 64]"});
+  fault.Number("lens.rotation", lens.rotation, kTurn);
+}
+
 void Check(const Camera& camera, FirstFault& fault) {
   fault.Components("eye", camera.eye, kPlace);
   fault.Components("look_at", camera.look_at, kPlace);
@@ -224,6 +258,7 @@ void Check(const Camera& camera, FirstFault& fault) {
   if (!fault.found()) fault.Fail(TextOf(FindViewFault(camera)));
   CheckPath(camera, fault);
   const ProjectionKind& kind = KindOf(camera.projection);
+  if (camera.lens) Check(*camera.lens, kind, fault);
   if (kind.unit == ProjectionUnit::kNone) return;
   fault.Number(kind.parameter, ParameterOf(camera.projection),
                {kSmallest, kind.largest, kind.range});

@@ -59,6 +59,8 @@ struct RenderOptions {
   // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
   // colours that differ by more than this are one, in [0, 1]. The scene's where samples are.
   std::optional<double> contrast;
+  // How light is followed; absent: the scene's.
+  std::optional<Integrator> integrator;
   // The pixels to render, a rectangle inside the picture that is not empty. The film holds them
   // alone; their bits are those of the whole picture.
   std::optional<PixelRect> crop;

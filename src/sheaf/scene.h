@@ -131,6 +131,9 @@ struct Material {
   Colour reflect{0.0};     // mirror reflectance, [0, 1]
   Colour transmit{0.0};  // [0, 1]: share that meets a dielectric interface and is split by Fresnel
   double ior = 1.0;      // index of refraction inside over outside, > 0
+  // Of what reflects and transmits, [0, 1]: 0 is smooth. Facets have slopes after GGX, with the
+  // square of it for alpha (docs/numerics.md).
+  double roughness = 0.0;
   // What is left of light after `attenuation_distance` > 0 inside, [0, 1] by colour: Beer's law.
   Colour attenuation{1.0};
   double attenuation_distance = 1.0;
@@ -206,16 +209,47 @@ struct PointLight {
 
 struct DirectionalLight {
   Vec3d direction{0.0, -1.0, 0.0};  // the way the light travels; any length but 0
+  // Under which its disk is seen, full, in degrees in [0, 180]: the sun's is 0.53. Shadows are soft
+  // where it is above 0.
+  double angle = 0.0;
 };
 
+// Lights that have a size, and so soft shadows. They are not seen themselves.
+
+// The rectangle center + (a - 1/2) u + (b - 1/2) v with a and b in [0, 1]; it shines from the side
+// that u x v points to.
+struct RectangleLight {
+  Vec3d center{0.0};
+  Vec3d u{1.0, 0.0, 0.0}, v{0.0, 0.0, 1.0};  // its edges; any but parallel
+};
+
+struct DiskLight {
+  Vec3d center{0.0};
+  double radius = 0.5;              // > 0
+  Vec3d direction{0.0, -1.0, 0.0};  // that it shines in; any length but 0
+};
+
+// It gives nothing inside.
+struct SphereLight {
+  Vec3d center{0.0};
+  double radius = 0.5;  // > 0
+};
+
+inline constexpr int kMaxLightSamples = 1024;
+
 // At distance r a point light gives intensity * colour * exposure / (kc + kl r + kq r^2), a
-// directional light intensity * colour * exposure.
+// directional light intensity * colour * exposure. A light with a size gives from afar what a point
+// light of its intensity does, a rectangle or disk times the cosine of the angle to the way it
+// shines.
 struct Light {
   std::string name;
-  std::variant<PointLight, DirectionalLight> source;
+  std::variant<PointLight, DirectionalLight, RectangleLight, DiskLight, SphereLight> source;
   Colour colour{1.0};
   double intensity = 1.0;  // >= 0
   bool casts_shadows = true;
+  // Of a light with a size: the points of it that a surface asks about for each of a pixel's
+  // samples, in [1, kMaxLightSamples].
+  int samples = 1;
 };
 
 struct Perspective {
@@ -277,12 +311,22 @@ struct CameraKey {
   double lens = 60.0;  // the number of the camera's projection, where it has one
 };
 
+// A thin lens: what lies on the plane of focus is sharp.
+struct Lens {
+  double aperture = 0.1;                       // diameter, > 0
+  std::optional<double> focus = std::nullopt;  // how far ahead that plane lies, > 0; look_at's
+  int blades = 0;         // corners of the aperture, in [3, 64], the first to the right; 0: round
+  double rotation = 0.0;  // of the blades, degrees in [-1e6, 1e6], counter-clockwise
+};
+
 struct Camera {
   std::string name;
   Vec3d eye{0.0};
   Vec3d look_at{0.0, 0.0, -1.0};
   Vec3d up{0.0, 1.0, 0.0};
   Projection projection;
+  // Depth of field, of perspective and orthographic cameras.
+  std::optional<Lens> lens = std::nullopt;
   // By ascending frame, no frame twice; empty: the camera stands still. Rendering takes no notice:
   // it sees what the members above say.
   std::vector<CameraKey> path = {};
@@ -339,6 +383,16 @@ enum class Shadows { kThrough, kOpaque };
 enum class Tone { kLinear, kFilmic };
 inline constexpr double kMaxEv = 64;
 
+// How light is followed. kWhitted: lights with a size are seen as their middle, mirrors and glass
+// are smooth and lenses are pinholes. kDistributed: all of them are sampled (Cook, Porter,
+// Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984). The same bits where a scene has none.
+enum class Integrator { kWhitted, kDistributed };
+
+// How a pixel's samples weigh what is around it. kBox: its own square. The others are drawn from,
+// so that samples count alike: a Gaussian of a standard deviation of half a pixel, cut off at 1.5,
+// and Blackman-Harris' window, 1.5 pixels to each side.
+enum class PixelFilter { kBox, kGaussian, kBlackmanHarris };
+
 struct Settings {
   int width = 640, height = 480;  // pixels, each in [1, kMaxImageSide]
   int samples = 1;                // a pixel, [1, kMaxSamples]
@@ -351,6 +405,8 @@ struct Settings {
   std::optional<Colour> ambient;
   double exposure = 1.0;  // scales every light but the ambient one, > 0
   Shadows shadows = Shadows::kThrough;
+  Integrator integrator = Integrator::kDistributed;
+  PixelFilter filter = PixelFilter::kBox;
   // Of pictures of bytes: light times 2^ev, ev in [-kMaxEv, kMaxEv], then the tone, then the
   // transfer; without an ev the one that MeterExposure finds. Colours here are linear.
   std::optional<double> ev = 0.0;

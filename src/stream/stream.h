@@ -77,6 +77,8 @@ using SurfaceStream = Stream<Real, SurfaceFields>;
 template <typename Real>
 using IncidenceStream = Stream<Real, IncidenceFields>;
 template <typename Real>
+using SampleStream = Stream<Real, SampleFields>;
+template <typename Real>
 using TexelStream = Stream<Real, TexelFields>;
 template <typename Real>
 using ColourStream = Stream<Real, ColourFields>;
