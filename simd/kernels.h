@@ -3,6 +3,7 @@
 #define SHEAF_SIMD_KERNELS_H_
 
 #include "simd/blend_vertices.h"
+#include "simd/choose_lobes.h"
 #include "simd/draw_facets.h"
 #include "simd/draw_samples.h"
 #include "simd/face_light.h"
@@ -11,6 +12,7 @@
 #include "simd/generate_shadow.h"
 #include "simd/report_target.h"
 #include "simd/sample_texture.h"
+#include "simd/scatter_diffuse.h"
 #include "simd/shade_ambient.h"
 #include "simd/shade_light.h"
 #include "simd/spawn_rays.h"
@@ -25,10 +27,12 @@
   X(ReportTarget, report_target)       \
   X(GeneratePrimary, generate_primary) \
   X(BlendVertices, blend_vertices)     \
+  X(ChooseLobes, choose_lobes)         \
   X(DrawFacets, draw_facets)           \
   X(DrawSamples, draw_samples)         \
   X(FindFootprints, find_footprints)   \
   X(SampleTexture, sample_texture)     \
+  X(ScatterDiffuse, scatter_diffuse)   \
   X(ShadeAmbient, shade_ambient)       \
   X(FaceLight, face_light)             \
   X(GenerateShadow, generate_shadow)

@@ -10,11 +10,12 @@ namespace sheaf {
 // kLightDimension on.
 inline constexpr std::uint32_t kLensDimension = 0;
 inline constexpr std::uint32_t kGlossDimension = 1;
+inline constexpr std::uint32_t kLobeDimension = 2;
+inline constexpr std::uint32_t kDiffuseDimension = 3;
 inline constexpr std::uint32_t kLightDimension = 16;
 
-// Told apart from its sibling, a child has other numbers than its parent.
-inline constexpr std::uint32_t kReflectedSeed = 0x68e31da4u;
-inline constexpr std::uint32_t kRefractedSeed = 0xb5297a4du;
+// By ChildKind. Told apart from its siblings, a child has other numbers than its parent.
+inline constexpr std::uint32_t kChildSeeds[] = {0x68e31da4u, 0xb5297a4du, 0x1b56c4e9u};
 
 // An integer hash of low bias: Wellons, "Hash Prospector" (2018), x ^= x >> a; x *= m; and so on.
 inline constexpr int kHashShifts[] = {16, 15, 16};

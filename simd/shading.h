@@ -2,6 +2,7 @@
 #ifndef SHEAF_SIMD_SHADING_H_
 #define SHEAF_SIMD_SHADING_H_
 
+#include <cstddef>
 #include <cstdint>
 
 namespace sheaf {
@@ -28,6 +29,8 @@ inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
 inline constexpr std::uint32_t kNeedsSeed = 1024;
 // Normals drawn for rough mirrors and interfaces: src/scalar/gloss.h.
 inline constexpr std::uint32_t kNeedsGloss = 2048;
+// One of its rays alone: src/scalar/choose_lobe.h.
+inline constexpr std::uint32_t kNeedsChoice = 4096;
 
 // A table of gloss has kGlossEntries numbers for rays that arrive from outside, for square roots of
 // cosines from 0 to 1 in kGlossSteps steps, then as many for rays from inside.
@@ -205,6 +208,17 @@ struct CameraData {
   Real lens_right[3] = {}, lens_up[3] = {};
   Real focus = 0, blades = 0, blade_turn = 0;  // the turn in quarter turns
 };
+
+// Of a surface's rays, in the order in which they are worked on.
+enum class ChildKind : std::uint32_t { kReflected, kRefracted, kDiffuse };
+inline constexpr std::size_t kChildKinds = 3;
+// Paths of this depth and deeper ones may end by chance.
+inline constexpr int kRouletteDepth = 3;
+
+// Whether dim paths may end, and how likely they go on at least.
+enum class Roulette : std::uint32_t { kOff, kOn };
+template <typename Real>
+inline constexpr Real kLeastSurvival = Real(0.05);
 
 // How many children surfaces have.
 struct SpawnCounts {

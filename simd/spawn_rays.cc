@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "simd/spawn_rays.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "simd/children-inl.h"
 #include "simd/compact-inl.h"
 #include "simd/dispatch.h"
 #include "simd/material-inl.h"
@@ -13,94 +14,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
-
-// Surfaces that are worked on together: the divisions and roots of several vectors overlap, which
-// those of one do not.
-inline constexpr std::uint32_t kBlock = 2 * kMaxLanes;
-
-// What each surface of a block does with the light that arrives.
-template <typename Real>
-struct Splits {
-  alignas(kAlignment) Real cos_i[kBlock], eta[kBlock];
-  alignas(kAlignment) Real reflectance[kBlock];
-  alignas(kAlignment) Real cos_t[kBlock];  // -1 where reflection is total
-};
-
-// The angles of arrival at a vector of surfaces from `i` on, to the block at `at`.
-template <typename Real>
-HWY_INLINE void StoreArrival(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                             std::uint32_t i, std::uint32_t at, Splits<Real>& splits) {
-  const Lanes<Real> d;
-  const IdLanes<Lanes<Real>> di;
-  const bool is_rough = (material.needs & kNeedsGloss) != 0;
-  const auto towards =
-      hn::Neg(Dot(d, hn::LoadU(d, (is_rough ? surfaces.facet_x : surfaces.normal_x) + i),
-                  hn::LoadU(d, (is_rough ? surfaces.facet_y : surfaces.normal_y) + i),
-                  hn::LoadU(d, (is_rough ? surfaces.facet_z : surfaces.normal_z) + i),
-                  hn::LoadU(d, surfaces.direction_x + i), hn::LoadU(d, surfaces.direction_y + i),
-                  hn::LoadU(d, surfaces.direction_z + i)));
-  hn::Store(hn::IfThenElseZero(hn::Gt(towards, hn::Zero(d)), towards), d, splits.cos_i + at);
-  if (!(material.needs & kNeedsTransmission)) return;
-  const auto bit = hn::Set(di, hn::TFromD<decltype(di)>{kInsideBit});
-  const auto source = LoadIds(d, surfaces.source + i);
-  const auto inside = hn::RebindMask(d, hn::Ne(hn::And(source, bit), hn::Zero(di)));
-  const auto ior = hn::Set(d, material.ior);
-  const auto outside_eta = hn::Div(hn::Set(d, Real(1)), ior);
-  hn::Store(hn::IfThenElse(inside, ior, outside_eta), d, splits.eta + at);
-}
-
-// src/scalar/spawn.h, FresnelSplit, for the surfaces of the block from `at` on, as many as are
-// wide.
-template <typename Real>
-HWY_INLINE void SplitLight(Splits<Real>& splits, std::uint32_t at) {
-  const WideLanes<Real> dw;
-  const NarrowLanes<Real> dn;
-  const auto zero = hn::Zero(dw), one = hn::Set(dw, 1.0), two = hn::Set(dw, 2.0);
-  const auto n = Widen(hn::Load(dn, splits.eta + at));
-  const auto c = Widen(hn::Load(dn, splits.cos_i + at));
-  const auto sin2 = hn::Mul(hn::Mul(n, n), hn::Sub(one, hn::Mul(c, c)));
-  const auto k = hn::Sub(one, sin2);
-  const auto passes = hn::Gt(k, zero);
-  const auto root = hn::Sqrt(k);
-  const auto n_c = hn::Mul(n, c), n_t = hn::Mul(n, root);
-  const auto s1 = hn::Add(n_c, root), p1 = hn::Add(c, n_t);
-  const auto both = hn::Mul(s1, p1);
-  const auto s = hn::Mul(hn::Sub(n_c, root), p1), p = hn::Mul(hn::Sub(c, n_t), s1);
-  const auto reflectance =
-      Divide(dw, hn::Add(hn::Mul(s, s), hn::Mul(p, p)), hn::Mul(two, hn::Mul(both, both)));
-  // Matched indices let everything through unbent, without the rounding of the square root.
-  const auto matched = hn::Eq(n, one);
-  const auto split = hn::IfThenElse(passes, reflectance, one);
-  const auto cos_t = hn::IfThenElse(passes, root, hn::Neg(one));
-  hn::Store(Narrow<Real>(hn::IfThenZeroElse(matched, split)), dn, splits.reflectance + at);
-  hn::Store(Narrow<Real>(hn::IfThenElse(matched, c, cos_t)), dn, splits.cos_t + at);
-}
-
-template <typename Real>
-HWY_INLINE void FillBlock(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                          std::uint32_t first, std::uint32_t count, Splits<Real>& splits) {
-  for (std::uint32_t i = 0; i < count; i += LaneCount(Lanes<Real>())) {
-    StoreArrival(material, surfaces, first + i, i, splits);
-  }
-  if (!(material.needs & kNeedsTransmission)) return;
-  for (std::uint32_t i = 0; i < count; i += LaneCount(WideLanes<Real>())) SplitLight(splits, i);
-}
-
-// KeepOnSide, then the unit vector.
-template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE void FinishDirection(D d, const MaterialData<Real>& material, V fx, V fy, V fz, V nx,
-                                V ny, V nz, V side, V& x, V& y, V& z) {
-  if (material.needs & kNeedsNormals) {
-    const auto differs = hn::Or(hn::Or(hn::Ne(nx, fx), hn::Ne(ny, fy)), hn::Ne(nz, fz));
-    const V height = Dot(d, x, y, z, fx, fy, fz);
-    const auto crosses = hn::And(differs, hn::Lt(hn::Mul(height, side), hn::Zero(d)));
-    const V back = hn::IfThenElseZero(crosses, hn::Mul(hn::Set(d, Real(2)), height));
-    x = hn::IfThenElse(crosses, hn::Sub(x, hn::Mul(fx, back)), x);
-    y = hn::IfThenElse(crosses, hn::Sub(y, hn::Mul(fy, back)), y);
-    z = hn::IfThenElse(crosses, hn::Sub(z, hn::Mul(fz, back)), z);
-  }
-  Normalize(d, x, y, z);
-}
 
 // src/scalar/spawn.h; `n_dot_child` is the cosine of the child's direction and the normal.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
@@ -180,11 +93,15 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     }
 
     const auto append = [&](V wr, V wg, V wb, V ox, V oy, V oz, V x, V y, V z, V side, VI from,
-                            const RayOutput<Real>& rays, const PathOutput<Real>& paths,
-                            std::uint32_t& at) HWY_ATTR {
+                            const Real* choice, const RayOutput<Real>& rays,
+                            const PathOutput<Real>& paths, std::uint32_t& at) HWY_ATTR {
       if (material.needs & kNeedsGloss) {
         FinishDirection(d, material, fx, fy, fz, nx, ny, nz, side, x, y, z);
         const V share = GlossShare(d, material, surfaces, i, Dot(d, x, y, z, nx, ny, nz), side);
+        wr = hn::Mul(wr, share), wg = hn::Mul(wg, share), wb = hn::Mul(wb, share);
+      }
+      if (material.needs & kNeedsChoice) {
+        const V share = hn::LoadU(d, choice + i);
         wr = hn::Mul(wr, share), wg = hn::Mul(wg, share), wb = hn::Mul(wb, share);
       }
       const auto counts = hn::Or(hn::Or(hn::Gt(wr, least), hn::Gt(wg, least)), hn::Gt(wb, least));
@@ -228,8 +145,8 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
     append(reflected_throughput(throughput_r, 0), reflected_throughput(throughput_g, 1),
            reflected_throughput(throughput_b, 2), hn::Add(px, away_x), hn::Add(py, away_y),
            hn::Add(pz, away_z), hn::Add(dx, hn::Mul(mx, twice)), hn::Add(dy, hn::Mul(my, twice)),
-           hn::Add(dz, hn::Mul(mz, twice)), one, source, reflected_rays, reflected_paths,
-           size.reflected);
+           hn::Add(dz, hn::Mul(mz, twice)), one, source, surfaces.choice_reflect, reflected_rays,
+           reflected_paths, size.reflected);
 
     if (hn::AllTrue(d, is_total)) continue;
     const auto refracted_throughput = [&](V parent_throughput, int channel) HWY_ATTR {
@@ -242,7 +159,7 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
            hn::Sub(pz, away_z), hn::Add(hn::Mul(dx, eta), hn::Mul(mx, bend)),
            hn::Add(hn::Mul(dy, eta), hn::Mul(my, bend)),
            hn::Add(hn::Mul(dz, eta), hn::Mul(mz, bend)), hn::Neg(one), hn::Xor(source, bit),
-           refracted_rays, refracted_paths, size.refracted);
+           surfaces.choice_refract, refracted_rays, refracted_paths, size.refracted);
   }
   return size;
 }

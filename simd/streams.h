@@ -106,6 +106,8 @@ struct SurfaceFields {
   // With kNeedsGloss: the normal that rays are mirrored and bent at, and what their throughputs are
   // multiplied with besides.
   Field<Real> facet_x, facet_y, facet_z, gloss;
+  // With kNeedsChoice: what the throughputs of its rays are multiplied with, 0 for all but one.
+  Field<Real> choice_reflect, choice_refract, choice_diffuse;
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -123,7 +125,8 @@ struct SurfaceFields {
       &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
       &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
       &SurfaceFields::facet_x, &SurfaceFields::facet_y, &SurfaceFields::facet_z,
-      &SurfaceFields::gloss);
+      &SurfaceFields::gloss, &SurfaceFields::choice_reflect, &SurfaceFields::choice_refract,
+      &SurfaceFields::choice_diffuse);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.

@@ -99,14 +99,14 @@ TEST_CASE("numbers of different seeds and dimensions are not correlated") {
   };
   CHECK(correlation(of(0, 1), of(0, 2)) < 0.06);
   CHECK(correlation(of(0, 1), of(1, 1)) < 0.06);
-  const auto child = [](std::uint32_t kind) {
+  const auto child = [](ChildKind kind) {
     return [=](std::uint32_t i) {
       const std::uint32_t seed = scalar::ChildSeed(scalar::PixelSeed(i % 64, i / 64), kind);
       return scalar::DrawSample<double>(seed, 0, 1).u;
     };
   };
-  CHECK(correlation(of(0, 1), child(kReflectedSeed)) < 0.06);
-  CHECK(correlation(child(kRefractedSeed), child(kReflectedSeed)) < 0.06);
+  CHECK(correlation(of(0, 1), child(ChildKind::kReflected)) < 0.06);
+  CHECK(correlation(child(ChildKind::kRefracted), child(ChildKind::kReflected)) < 0.06);
 }
 
 }  // namespace

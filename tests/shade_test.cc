@@ -137,8 +137,10 @@ TEST_CASE("ambient light is ka times the base colour, with no light at all") {
   CHECK(colour.y == 0.1f);
   CHECK(colour.z == 0.125f);
   RayCounts tally;
-  const auto local = scalar::LocalLight(FrameView<float>{}, material, material,
-                                        scalar::PatternAt(material, Floor()), Floor(), tally);
+  Surface<float> floor = Floor();
+  const scalar::ShadedPoint<float> at{material, material, scalar::PatternAt(material, floor),
+                                      floor};
+  const auto local = scalar::LocalLight(FrameView<float>{}, at, {}, tally);
   CHECK(local.x == 0.1f);
   CHECK(local.z == 0.125f);
 }
@@ -158,8 +160,9 @@ Vec3<float> UnderOneLight(const LightData<float>& light, const MaterialData<floa
   Surface<float> surface = Floor();
   surface.source = 99;
   RayCounts tally;
-  return scalar::LocalLight(frame, material, material, scalar::PatternAt(material, surface),
-                            surface, tally);
+  const scalar::ShadedPoint<float> at{material, material, scalar::PatternAt(material, surface),
+                                      surface};
+  return scalar::LocalLight(frame, at, {}, tally);
 }
 
 TEST_CASE("a light at, below or behind the surface gives nothing and no NaN") {

@@ -34,6 +34,10 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   options.contrast = request.contrast;
   if (!request.samples && !request.contrast) options.contrast = settings.contrast;
   options.min_throughput = request.min_throughput.value_or(0);
+  options.integrator = settings.integrator;
+  for (const Integrator integrator : kIntegrators) {
+    if (request.integrator == IntegratorName(integrator)) options.integrator = integrator;
+  }
   options.crop = request.crop;
   if (const Status chosen = ChooseTarget(request.target, options); !chosen) return chosen.error();
   options.precision = PrecisionOf(request.precision);

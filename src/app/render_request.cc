@@ -51,6 +51,11 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   AddPictureFormat(app, request.format);
   AddSize(app, request.size);
   AddInteger(app, "--spp", request.samples, 1, kMaxSamples, "Samples a pixel");
+  std::vector<std::string> integrators;
+  for (const Integrator integrator : kIntegrators) {
+    integrators.push_back(IntegratorName(integrator));
+  }
+  AddChoice(app, "--integrator", request.integrator, integrators, "How light is followed");
   AddInteger(app, "--max-depth", request.max_depth, 0, kMaxDepth,
              "A ray deeper than this is black; primary rays have depth 0");
   AddShare(app, "--adaptive", request.contrast, "T",

@@ -38,6 +38,7 @@ struct RenderRequest {
   std::string output;            // "-": standard output
   std::string format;            // of --format; empty: by the path's ending
   std::optional<PixelSize> size;
+  std::string integrator;  // empty: the scene's
   std::optional<int> samples, max_depth;
   std::optional<double> contrast, min_throughput;
   std::string target = "auto";

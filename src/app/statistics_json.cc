@@ -66,6 +66,7 @@ Json FrameJson(const FrameRecord& frame) {
         {"shadow", stats.rays.shadow},
         {"reflected", stats.rays.reflected},
         {"refracted", stats.rays.refracted},
+        {"diffuse", stats.rays.diffuse},
         {"beyond_depth", stats.rays.beyond_depth},
         {"traced", stats.rays.traced()}}},
       {"seconds", SecondsJson(frame)},
@@ -74,6 +75,7 @@ Json FrameJson(const FrameRecord& frame) {
   if (frame.frame) json["frame"] = *frame.frame;
   if (frame.resumed_rows > 0) json["resumed_rows"] = frame.resumed_rows;
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
+  if (options.integrator) json["integrator"] = IntegratorName(*options.integrator);
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;
   if (options.crop) {

@@ -96,8 +96,10 @@ void ReadEnvironment(const JsonCursor& value, ColourSource* source,
   object.Finish();
 }
 
-constexpr std::pair<std::string_view, Integrator> kIntegrators[] = {
-    {"whitted", Integrator::kWhitted}, {"distributed", Integrator::kDistributed}};
+const std::pair<std::string_view, Integrator> kNamedIntegrators[] = {
+    {IntegratorName(Integrator::kWhitted), Integrator::kWhitted},
+    {IntegratorName(Integrator::kDistributed), Integrator::kDistributed},
+    {IntegratorName(Integrator::kPath), Integrator::kPath}};
 constexpr std::pair<std::string_view, PixelFilter> kPixelFilters[] = {
     {"box", PixelFilter::kBox},
     {"gaussian", PixelFilter::kGaussian},
@@ -172,7 +174,7 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   if (IsOther(object.Optional("shadows"), "through", "opaque")) {
     settings.shadows = Shadows::kOpaque;
   }
-  ReadChoice(object.Optional("integrator"), kIntegrators, &settings.integrator);
+  ReadChoice(object.Optional("integrator"), kNamedIntegrators, &settings.integrator);
   ReadChoice(object.Optional("pixel_filter"), kPixelFilters, &settings.filter);
   object.Finish();
   return settings;
@@ -191,7 +193,7 @@ Json SettingsJson(const Settings& settings) {
   if (settings.tone == Tone::kFilmic) json["tone"] = "filmic";
   if (settings.shadows == Shadows::kOpaque) json["shadows"] = "opaque";
   if (settings.integrator != Integrator::kDistributed) {
-    json["integrator"] = NameOf(settings.integrator, kIntegrators);
+    json["integrator"] = IntegratorName(settings.integrator);
   }
   if (settings.filter != PixelFilter::kBox) {
     json["pixel_filter"] = NameOf(settings.filter, kPixelFilters);

@@ -238,6 +238,15 @@ void AddFootprintNeeds(CompiledScene<Real>& compiled) {
   }
 }
 
+// Paths find the light that is around by themselves, and go on from what is diffuse.
+template <typename Real>
+void FollowOneRay(MaterialData<Real>& data) {
+  for (Real& light : data.ambient) light = 0;
+  const bool is_diffuse = data.kd > 0 || data.finish.metallic_roughness != kNoTexture;
+  if (is_diffuse) data.needs |= kNeedsChildren;
+  if (data.needs & kNeedsChildren) data.needs |= kNeedsChoice;
+}
+
 }  // namespace
 
 Colour AmbientLightOf(const Settings& settings) {
@@ -267,6 +276,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     if (integrator == Integrator::kWhitted) data.slope_width = 0;
     if (data.slope_width > 0) data.gloss = compiled.gloss.TableOf(data);
     data.needs = NeedsOf(data);
+    if (integrator == Integrator::kPath) FollowOneRay(data);
     compiled.materials.push_back(data);
   }
   AddFootprintNeeds(compiled);

@@ -30,11 +30,14 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
   const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
   const std::uint64_t facets =
       bits(&Fields::facet_x, &Fields::facet_y, &Fields::facet_z, &Fields::gloss);
-  return ~(coordinates | faces | curves | tints | terms | widths | footprints | facets) |
+  const std::uint64_t choices =
+      bits(&Fields::choice_reflect, &Fields::choice_refract, &Fields::choice_diffuse);
+  return ~(coordinates | faces | curves | tints | terms | widths | footprints | facets | choices) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
          (needs & kNeedsTerms ? terms : 0) | (needs & kNeedsWidth ? widths : 0) |
-         (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsGloss ? facets : 0);
+         (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsGloss ? facets : 0) |
+         (needs & kNeedsChoice ? choices : 0);
 }
 
 // The fields of texels that these materials look up in so many textures, likewise.

@@ -40,7 +40,7 @@ void ParentOrder<Real>::Apply(const RayOutput<Real>& rays, const PathOutput<Real
 }
 
 template <typename Real>
-void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, std::uint32_t kind,
+void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ChildKind kind,
                                    ParentOrder<Real>& order) {
   const std::uint32_t spawned = count_ - first_;
   const PathOutput<Real> paths = paths_.output(first_);

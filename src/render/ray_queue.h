@@ -99,8 +99,8 @@ class RayQueue {
     bins_ += spawned > 0;
   }
   // Gives the rays since StartParents their pixels, the order of their parents and, where those
-  // have any, seeds of their `kind` (simd/sample_terms.h).
-  void FinishParents(const RayBatch<Real>& parents, std::uint32_t kind, ParentOrder<Real>& order);
+  // have any, seeds.
+  void FinishParents(const RayBatch<Real>& parents, ChildKind kind, ParentOrder<Real>& order);
 
   std::uint32_t count() const { return count_; }
   std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }

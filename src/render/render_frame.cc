@@ -37,7 +37,7 @@ struct CompiledFrame {
 // Whether there is anything to draw random points from.
 template <typename Real>
 bool IsDistributed(const FrameView<Real>& frame) {
-  return frame.camera.lens != LensUse::kNone ||
+  return frame.follows_paths || frame.camera.lens != LensUse::kNone ||
          std::any_of(frame.lights.begin(), frame.lights.end(),
                      [](const auto& light) { return light.shape != LightShape::kPoint; }) ||
          std::any_of(frame.materials.begin(), frame.materials.end(),
@@ -91,6 +91,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
                   [](const MaterialData<Real>& material) { return material.attenuates; }),
       static_cast<Real>(1 / placement.scale)};
   if (integrator == Integrator::kWhitted) frame->view.camera.lens = LensUse::kNone;
+  frame->view.follows_paths = integrator == Integrator::kPath;
   frame->view.is_distributed = IsDistributed(frame->view);
   // With adaptive sampling a pixel's only sample stands for all of it.
   const double parts = frame->view.is_adaptive() ? 1 : options.samples;

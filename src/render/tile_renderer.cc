@@ -1,6 +1,7 @@
 #include "src/render/tile_renderer.h"
 
 #include <algorithm>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -57,34 +58,34 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
                                       FirstHitRecorder<Real>* recorder) {
   clock_.Start();
   GeneratePrimary(pixels, sample);
-  next_reflected_.Reset(pixels.count);
-  next_refracted_.Reset(pixels.count);
+  for (RayQueue<Real>& queue : next_queues_) queue.Reset(pixels.count);
   const RayBatch<Real> primary =
       primary_.batch(frame_.is_distributed ? samples_.pixel_seeds() : nullptr);
   Trace(primary);
-  Shade(primary, sample_, recorder);
-  for (int depth = 1; next_reflected_.count() + next_refracted_.count() > 0; ++depth) {
-    std::swap(reflected_, next_reflected_);
-    std::swap(refracted_, next_refracted_);
-    const std::uint32_t spawned = reflected_.count() + refracted_.count();
-    rays_.reflected += reflected_.count();
-    rays_.refracted += refracted_.count();
+  Shade(primary, 0, sample_, recorder);
+  for (int depth = 1;; ++depth) {
+    std::swap(queues_, next_queues_);
+    std::uint32_t spawned = 0;
+    for (const RayQueue<Real>& queue : queues_) spawned += queue.count();
+    if (spawned == 0) break;
+    rays_.reflected += queues_[0].count();
+    rays_.refracted += queues_[1].count();
+    rays_.diffuse += queues_[2].count();
     if (depth > frame_.max_depth) {  // these count, and are black
       rays_.beyond_depth += spawned;
       break;
     }
-    next_reflected_.Reset(spawned);
-    next_refracted_.Reset(spawned);
-    for (RayQueue<Real>* queue : {&reflected_, &refracted_}) {
+    for (RayQueue<Real>& queue : next_queues_) queue.Reset(spawned);
+    for (RayQueue<Real>& queue : queues_) {
       if (IsStopped()) return;
-      const RayBatch<Real> batch = queue->batch();
+      const RayBatch<Real> batch = queue.batch();
       if (batch.count == 0) continue;
       ray_colours_.Reserve(batch.count);
       Trace(batch);
       if (frame_.attenuates) {
-        AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue->paths());
+        AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue.paths());
       }
-      Shade(batch, ray_colours_, nullptr);
+      Shade(batch, depth, ray_colours_, nullptr);
       AccumulateColours(ray_colours_.view(), batch.paths, batch.count, sample_.output());
       clock_.Charge(Phase::kAccumulate);
     }
@@ -116,12 +117,11 @@ void TileRenderer<Real>::Trace(const RayBatch<Real>& batch) {
 }
 
 template <typename Real>
-void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
+void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, int depth, ColourStream<Real>& colours,
                                FirstHitRecorder<Real>* recorder) {
   const ColourOutput<Real> seen = colours.output();
   FillEnvironment(frame_, batch.rays, binner_.missed_rays(), batch.count, seen);
-  next_reflected_.StartParents();
-  next_refracted_.StartParents();
+  for (RayQueue<Real>& queue : next_queues_) queue.StartParents();
   for (const HitBin& bin : binner_.bins()) {
     const MaterialData<Real>& material = frame_.materials[bin.material];
     const std::uint32_t count = bin.batch.count;
@@ -141,28 +141,47 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, ColourStream<Real>& 
     if (material.needs & kNeedsLights) lights_.Shade(material, surfaces, count, shaded);
     if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, seen);
     clock_.Charge(Phase::kAccumulate);
-    if (material.needs & kNeedsChildren) Spawn(batch.paths, material, surfaces, count);
+    if (material.needs & kNeedsChildren) Spawn(batch.paths, depth, material, surfaces, count);
   }
-  next_reflected_.FinishParents(batch, kReflectedSeed, parent_order_);
-  next_refracted_.FinishParents(batch, kRefractedSeed, parent_order_);
+  for (std::size_t i = 0; i < kChildKinds; ++i) {
+    next_queues_[i].FinishParents(batch, static_cast<ChildKind>(i), parent_order_);
+  }
   clock_.Charge(Phase::kSpawn);
 }
 
 template <typename Real>
-void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
+void TileRenderer<Real>::Spawn(const PathView<Real>& parents, int depth,
+                               const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, std::uint32_t count) {
   if (material.needs & kNeedsGloss) {
     const SampleView<Real> points = samples_.DrawForSurfaces(kGlossDimension);
     kernels_.draw_facets(material, surfaces, points, count, surfaces_.output());
     clock_.Charge(Phase::kSpawn, count, count);
   }
-  next_reflected_.MakeRoom(path_fields_);
-  if (material.needs & kNeedsTransmission) next_refracted_.MakeRoom(path_fields_);
+  if (material.needs & kNeedsChoice) ChooseRays(parents, depth, material, surfaces, count);
+  RayQueue<Real>&reflected = next(ChildKind::kReflected), &refracted = next(ChildKind::kRefracted);
+  reflected.MakeRoom(path_fields_);
+  if (material.needs & kNeedsTransmission) refracted.MakeRoom(path_fields_);
   const SpawnCounts spawned = kernels_.spawn_rays(
-      material, surfaces, count, parents, frame_.min_throughput, next_reflected_.next_rays(),
-      next_reflected_.next_paths(), next_refracted_.next_rays(), next_refracted_.next_paths());
-  next_reflected_.Append(spawned.reflected);
-  next_refracted_.Append(spawned.refracted);
+      material, surfaces, count, parents, frame_.min_throughput, reflected.next_rays(),
+      reflected.next_paths(), refracted.next_rays(), refracted.next_paths());
+  reflected.Append(spawned.reflected);
+  refracted.Append(spawned.refracted);
+  clock_.Charge(Phase::kSpawn, count, count);
+}
+
+template <typename Real>
+void TileRenderer<Real>::ChooseRays(const PathView<Real>& parents, int depth,
+                                    const MaterialData<Real>& material,
+                                    const SurfaceView<Real>& surfaces, std::uint32_t count) {
+  const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
+  kernels_.choose_lobes(material, surfaces, parents, samples_.DrawForSurfaces(kLobeDimension),
+                        roulette, count, surfaces_.output());
+  RayQueue<Real>& diffuse = next(ChildKind::kDiffuse);
+  diffuse.MakeRoom(path_fields_);
+  diffuse.Append(kernels_.scatter_diffuse(
+      material, surfaces, count, parents, samples_.DrawForSurfaces(kDiffuseDimension),
+      frame_.min_throughput, diffuse.next_rays(), diffuse.next_paths()));
   clock_.Charge(Phase::kSpawn, count, count);
 }
 
@@ -219,7 +238,10 @@ std::size_t TileRenderer<Real>::buffer_bytes() const {
   std::size_t sum = 0;
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
   add(binner_, samples_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
-  add(reflected_, refracted_, next_reflected_, next_refracted_, parent_order_);
+  for (const auto& queues : {std::span(queues_), std::span(next_queues_)}) {
+    for (const RayQueue<Real>& queue : queues) add(queue);
+  }
+  add(parent_order_);
   add(hits_, surfaces_, texels_, ray_colours_, surface_colours_);
   return sum;
 }

@@ -47,11 +47,15 @@ class TileRenderer : public TileWorker {
   void GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample);
   // Leaves hits_ and the bins.
   void Trace(const RayBatch<Real>& batch);
-  // What was traced last.
-  void Shade(const RayBatch<Real>& batch, ColourStream<Real>& colours,
+  // What was traced last, rays of this depth.
+  void Shade(const RayBatch<Real>& batch, int depth, ColourStream<Real>& colours,
              FirstHitRecorder<Real>* recorder);
-  void Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
+  void Spawn(const PathView<Real>& parents, int depth, const MaterialData<Real>& material,
              const SurfaceView<Real>& surfaces, std::uint32_t count);
+  // Where one ray of each surface is followed: which, and those that diffuse surfaces scatter.
+  void ChooseRays(const PathView<Real>& parents, int depth, const MaterialData<Real>& material,
+                  const SurfaceView<Real>& surfaces, std::uint32_t count);
+  RayQueue<Real>& next(ChildKind kind) { return next_queues_[static_cast<std::size_t>(kind)]; }
   void RefineEdges(const PixelRect& tile);
   void RefineAll();
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
@@ -73,8 +77,8 @@ class TileRenderer : public TileWorker {
   EdgeFinder<Real> edges_;
 
   PrimaryRays<Real> primary_;
-  // The rays of this depth and of the next; reflected before refracted wherever their order counts.
-  RayQueue<Real> reflected_, refracted_, next_reflected_, next_refracted_;
+  // The rays of this depth and of the next, by kind.
+  RayQueue<Real> queues_[kChildKinds], next_queues_[kChildKinds];
   ParentOrder<Real> parent_order_;
 
   HitStream<Real> hits_;

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "simd/sample_terms.h"
+#include "simd/shading.h"
 
 namespace sheaf::scalar {
 
@@ -25,9 +26,9 @@ constexpr std::uint32_t Hash(std::uint32_t x) {
 // Of what a pixel, counted in the whole picture, shows.
 constexpr std::uint32_t PixelSeed(std::uint32_t x, std::uint32_t y) { return Hash(x + Hash(y)); }
 
-// Of a ray that a surface sends on. `kind` is kReflectedSeed or kRefractedSeed.
-constexpr std::uint32_t ChildSeed(std::uint32_t parent, std::uint32_t kind) {
-  return Hash(parent ^ kind);
+// Of a ray that a surface sends on.
+constexpr std::uint32_t ChildSeed(std::uint32_t parent, ChildKind kind) {
+  return Hash(parent ^ kChildSeeds[static_cast<std::size_t>(kind)]);
 }
 
 constexpr std::uint32_t ReverseBits(std::uint32_t x) {

@@ -16,6 +16,7 @@
 #include "simd/shading.h"
 #include "src/scalar/attenuate.h"
 #include "src/scalar/camera_ray.h"
+#include "src/scalar/choose_lobe.h"
 #include "src/scalar/environment.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/footprint.h"
@@ -31,7 +32,8 @@ namespace sheaf::scalar {
 // One depth's rays and the next one's, kept to spare allocations.
 template <typename Real>
 struct PixelScratch {
-  std::vector<Path<Real>> paths, reflected, refracted;
+  std::vector<Path<Real>> paths;
+  std::vector<Path<Real>> children[kChildKinds];
 };
 
 // What random numbers are drawn by: a ray's seed, and which of the pixel's samples it is of.
@@ -39,40 +41,45 @@ struct SampleKey {
   std::uint32_t seed, index;
 };
 
-// The light of one point of a light with a size, or all of another light. `here` is the material as
-// it is at the surface, where its base colour is `base`.
+// Where a ray arrived: `here` is its material as it is at the surface, where its base colour is
+// `base`.
+template <typename Real>
+struct ShadedPoint {
+  const MaterialData<Real>&material, &here;
+  Vec3<Real> base;
+  Surface<Real>& surface;
+};
+
+// The light of one point of a light with a size, or all of another light.
 template <typename Real>
 Vec3<Real> LightFrom(const FrameView<Real>& frame, const LightData<Real>& light,
-                     SamplePoint<Real> point, const MaterialData<Real>& here, Vec3<Real> base,
-                     const Surface<Real>& surface, RayCounts& tally) {
-  const Incidence<Real> incidence = IncidenceOf(light, surface, point);
+                     SamplePoint<Real> drawn, const ShadedPoint<Real>& at, RayCounts& tally) {
+  const Incidence<Real> incidence = IncidenceOf(light, at.surface, drawn);
   if (!incidence.reaches) return {0, 0, 0};
   Vec3<Real> share = {1, 1, 1};
   if (light.casts_shadows) {
     ++tally.shadow;
-    share = LightShare(frame, ShadowRay(light, surface, incidence));
+    share = LightShare(frame, ShadowRay(light, at.surface, incidence));
     if (!IsLight(share)) return {0, 0, 0};
   }
-  return MultiplyColours(LitBy(light, here, surface, base, incidence), share);
+  return MultiplyColours(LitBy(light, at.here, at.surface, at.base, incidence), share);
 }
 
-// `here` is the material as it is at the surface, where its base colour is `base`.
 template <typename Real>
-Vec3<Real> LocalLight(const FrameView<Real>& frame, const MaterialData<Real>& material,
-                      const MaterialData<Real>& here, Vec3<Real> base, const Surface<Real>& surface,
-                      SampleKey key, RayCounts& tally) {
-  if (!HasLocalLight(material, surface)) return {0, 0, 0};
-  Vec3<Real> colour = AmbientLight(here, base);
-  if (!ReactsToLight(material)) return colour;
+Vec3<Real> LocalLight(const FrameView<Real>& frame, const ShadedPoint<Real>& at, SampleKey key,
+                      RayCounts& tally) {
+  if (!HasLocalLight(at.material, at.surface)) return {0, 0, 0};
+  Vec3<Real> colour = AmbientLight(at.here, at.base);
+  if (!ReactsToLight(at.material)) return colour;
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
     const LightData<Real>& light = frame.lights[i];
     const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
     for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
-      SamplePoint<Real> point;
+      SamplePoint<Real> drawn;
       if (light.shape != LightShape::kPoint) {
-        point = DrawSample<Real>(key.seed, key.index * light.samples + draw, dimension);
+        drawn = DrawSample<Real>(key.seed, key.index * light.samples + draw, dimension);
       }
-      colour = colour + LightFrom(frame, light, point, here, base, surface, tally);
+      colour = colour + LightFrom(frame, light, drawn, at, tally);
     }
   }
   return colour;
@@ -94,6 +101,45 @@ Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Rea
                      frame.geometry.triangles, primitive.index(), surface);
   }
   return surface;
+}
+
+// The rays that the surface sends on: those of mirror and interface, or one ray of a path. Leaves
+// in the surface the facet that they were sent on by.
+template <typename Real>
+void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key, int depth,
+            const ShadedPoint<Real>& at, std::vector<Path<Real>> (&children)[kChildKinds]) {
+  const auto& [material, here, base, surface] = at;
+  const bool scatters = frame.follows_paths && here.kd > 0;
+  if (!SpawnsRays(here) && !scatters) return;
+  const auto draw = [&](std::uint32_t dimension) {
+    return DrawSample<Real>(key.seed, key.index, dimension);
+  };
+  if (material.slope_width > 0) {
+    surface.facet = DrawFacet(material.slope_width, surface, draw(kGlossDimension));
+    surface.gloss = GlossAt(material, surface);
+  }
+  Spawned<Real> spawned = Spawn(here, surface, path.throughput);
+  const auto append = [&](ChildKind kind, Path<Real>& child) {
+    if (!child.counts(frame.min_throughput)) return;
+    if (frame.is_distributed) child.seed = ChildSeed(path.seed, kind);
+    children[static_cast<std::size_t>(kind)].push_back(child);
+  };
+  if (frame.follows_paths) {
+    const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
+    const Lobes<Real> lobes = ChooseLobe(material, here, surface, base, path.throughput, roulette,
+                                         draw(kLobeDimension).u);
+    for (int i = 0; i < 3; ++i) {
+      spawned.reflected.throughput[i] = spawned.reflected.throughput[i] * lobes.reflect;
+      spawned.refracted.throughput[i] = spawned.refracted.throughput[i] * lobes.refract;
+    }
+    if (lobes.diffuse > 0) {
+      Path<Real> diffuse = ScatterDiffuse(here, surface, base, path.throughput, lobes.diffuse,
+                                          draw(kDiffuseDimension));
+      append(ChildKind::kDiffuse, diffuse);
+    }
+  }
+  append(ChildKind::kReflected, spawned.reflected);
+  append(ChildKind::kRefracted, spawned.refracted);
 }
 
 // Adds `colour`, seen with `throughput`, to `sum`.
@@ -128,8 +174,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
   scratch.paths.assign(1, PrimaryPath(frame, x, y, index));
   ++tally.primary;
   for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
-    scratch.reflected.clear();
-    scratch.refracted.clear();
+    for (auto& children : scratch.children) children.clear();
     for (Path<Real>& path : scratch.paths) {
       const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
       if (hit.primitive == kNoPrimitive) {
@@ -157,32 +202,23 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
         first->primitive = hit.primitive;
       }
       const SampleKey key{path.seed, index};
-      Accumulate(sum, path.throughput,
-                 LocalLight(frame, material, here, base, surface, key, tally));
-      if (!SpawnsRays(here)) continue;
-      if (material.slope_width > 0) {
-        const auto point = DrawSample<Real>(key.seed, key.index, kGlossDimension);
-        surface.facet = DrawFacet(material.slope_width, surface, point);
-        surface.gloss = GlossAt(material, surface);
-      }
-      Spawned<Real> spawned = Spawn(here, surface, path.throughput);
-      if (frame.is_distributed) {
-        spawned.reflected.seed = ChildSeed(path.seed, kReflectedSeed);
-        spawned.refracted.seed = ChildSeed(path.seed, kRefractedSeed);
-      }
-      if (spawned.reflected.counts(frame.min_throughput))
-        scratch.reflected.push_back(spawned.reflected);
-      if (spawned.refracted.counts(frame.min_throughput))
-        scratch.refracted.push_back(spawned.refracted);
+      const ShadedPoint<Real> at{material, here, base, surface};
+      Accumulate(sum, path.throughput, LocalLight(frame, at, key, tally));
+      SendOn(frame, path, key, depth, at, scratch.children);
     }
-    tally.reflected += scratch.reflected.size();
-    tally.refracted += scratch.refracted.size();
+    const std::size_t spawned =
+        scratch.children[0].size() + scratch.children[1].size() + scratch.children[2].size();
+    tally.reflected += scratch.children[0].size();
+    tally.refracted += scratch.children[1].size();
+    tally.diffuse += scratch.children[2].size();
     if (depth == frame.max_depth) {  // what is deeper counts, and is black
-      tally.beyond_depth += scratch.reflected.size() + scratch.refracted.size();
+      tally.beyond_depth += spawned;
       break;
     }
-    scratch.paths.swap(scratch.reflected);
-    scratch.paths.insert(scratch.paths.end(), scratch.refracted.begin(), scratch.refracted.end());
+    scratch.paths.clear();
+    for (const auto& children : scratch.children) {
+      scratch.paths.insert(scratch.paths.end(), children.begin(), children.end());
+    }
   }
   return sum;
 }

@@ -77,6 +77,33 @@ Vec3<Real> KeepOnSide(const Surface<Real>& surface, Vec3<Real> direction, Real s
   return height * side < 0 ? direction - f * (2 * height) : direction;
 }
 
+// The normal that rays are mirrored and bent at.
+template <typename Real>
+Vec3<Real> MirrorNormal(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  return material.slope_width > 0 ? surface.facet : surface.normal;
+}
+
+template <typename Real>
+Real ArrivalCosine(Vec3<Real> normal, Vec3<Real> direction) {
+  const Real towards = -Dot(normal, direction);
+  return towards > 0 ? towards : Real(0);
+}
+
+// The index of refraction on the ray's side over that on the other side.
+template <typename Real>
+Real IndexRatio(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  return surface.inside() ? material.ior : 1 / material.ior;
+}
+
+// How the surface splits the light of the ray that arrived; of a material that does not transmit,
+// all is reflected that is.
+template <typename Real>
+Split<Real> SplitAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
+  if (!AnyPositive(material.transmit)) return {0, 0, true};
+  return FresnelSplit(IndexRatio(material, surface),
+                      ArrivalCosine(MirrorNormal(material, surface), surface.direction));
+}
+
 // What is left of light that a rough surface sends along the unit vector `direction`, on the side
 // of its normal that `side` names.
 template <typename Real>
@@ -89,12 +116,9 @@ template <typename Real>
 Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
                     const Real (&throughput)[3]) {
   const bool is_rough = material.slope_width > 0;
-  const Vec3<Real> n = is_rough ? surface.facet : surface.normal, d = surface.direction;
-  const Real towards = -Dot(n, d);
-  const Real cos_i = towards > 0 ? towards : Real(0);
-  const Real eta = surface.inside() ? material.ior : 1 / material.ior;
-  Split<Real> split{0, 0, true};
-  if (AnyPositive(material.transmit)) split = FresnelSplit(eta, cos_i);
+  const Vec3<Real> n = MirrorNormal(material, surface), d = surface.direction;
+  const Real cos_i = ArrivalCosine(n, d), eta = IndexRatio(material, surface);
+  const Split<Real> split = SplitAt(material, surface);
 
   Spawned<Real> spawned;
   const Vec3<Real> away = surface.face * surface.offset;

@@ -386,7 +386,16 @@ inline constexpr double kMaxEv = 64;
 // How light is followed. kWhitted: lights with a size are seen as their middle, mirrors and glass
 // are smooth and lenses are pinholes. kDistributed: all of them are sampled (Cook, Porter,
 // Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984). The same bits where a scene has none.
-enum class Integrator { kWhitted, kDistributed };
+// kPath: light that diffuse surfaces send to one another is followed too, one ray of each surface
+// (Kajiya, "The Rendering Equation", SIGGRAPH 1986); there is no ambient light.
+enum class Integrator { kWhitted, kDistributed, kPath };
+
+// Every integrator, in the order of the enumeration.
+inline constexpr Integrator kIntegrators[] = {Integrator::kWhitted, Integrator::kDistributed,
+                                              Integrator::kPath};
+
+// "whitted", "distributed" or "path".
+SHEAF_API const char* IntegratorName(Integrator integrator);
 
 // How a pixel's samples weigh what is around it. kBox: its own square. The others are drawn from,
 // so that samples count alike: a Gaussian of a standard deviation of half a pixel, cut off at 1.5,

@@ -12,16 +12,20 @@ namespace sheaf {
 // Rays by what they are for.
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0;
-  std::uint64_t reflected = 0, refracted = 0;  // counted where they are spawned
-  std::uint64_t beyond_depth = 0;  // of the last two: deeper than the limit, black, not traced
+  // Counted where they are spawned; diffuse ones by path tracing alone.
+  std::uint64_t reflected = 0, refracted = 0, diffuse = 0;
+  std::uint64_t beyond_depth = 0;  // of the last three: deeper than the limit, black, not traced
 
   // How many rays went through the tree.
-  std::uint64_t traced() const { return primary + shadow + reflected + refracted - beyond_depth; }
+  std::uint64_t traced() const {
+    return primary + shadow + reflected + refracted + diffuse - beyond_depth;
+  }
   RayCounts& operator+=(const RayCounts& other) {
     primary += other.primary;
     shadow += other.shadow;
     reflected += other.reflected;
     refracted += other.refracted;
+    diffuse += other.diffuse;
     beyond_depth += other.beyond_depth;
     return *this;
   }

@@ -48,12 +48,14 @@ struct FrameView {
   // Adaptive sampling: the contrast that is an edge (src/scalar/first_hit.h); NaN: all samples
   // everywhere.
   Real contrast;
-  Real min_throughput;          // secondary rays of no more are not traced; 0: of none
-  bool passes_light;            // whether any material lets light pass
-  bool attenuates;              // whether any takes light inside
-  Real length_unit;             // the user's lengths in one of the geometry's; a power of two
-  PixelCone<Real> cone = {};    // of primary rays
-  bool is_distributed = false;  // whether a light, a lens or a rough surface is drawn from
+  Real min_throughput;        // secondary rays of no more are not traced; 0: of none
+  bool passes_light;          // whether any material lets light pass
+  bool attenuates;            // whether any takes light inside
+  Real length_unit;           // the user's lengths in one of the geometry's; a power of two
+  PixelCone<Real> cone = {};  // of primary rays
+  // Whether a light, a lens or a rough surface is drawn from, or paths are followed.
+  bool is_distributed = false;
+  bool follows_paths = false;  // one ray of each surface alone
 
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
 };
