@@ -141,6 +141,7 @@ RenderOptions SmallPicture(const RenderOptions& options, int side) {
   small.crop.reset();
   small.samples = 1;
   small.contrast.reset();
+  small.error.reset();
   small.timing = Timing::kOff;
   small.layers = {};
   return small;

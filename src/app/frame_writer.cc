@@ -25,8 +25,10 @@ std::string SettingsText(const RenderOptions& options, const Camera& camera, con
       "eye {} {} {}, look at {} {} {}, {} {}{}{}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
-      options.contrast ? fmt::format(", adaptive {:g}", *options.contrast) : "", eye.x, eye.y,
-      eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),
+      options.error      ? fmt::format(", error {:g}", *options.error)
+      : options.contrast ? fmt::format(", adaptive {:g}", *options.contrast)
+                         : "",
+      eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),
       look.ev != 0 ? fmt::format(", {:.3g} stops", look.ev) : "",
       look.tone == Tone::kFilmic ? ", filmic" : "");
 }

@@ -32,7 +32,12 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   RenderOptions options = FrameOptions(settings, request.size, request.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
   options.contrast = request.contrast;
-  if (!request.samples && !request.contrast) options.contrast = settings.contrast;
+  options.error = request.error;
+  if (request.error && request.contrast) return Usage("--error: not together with --adaptive");
+  if (!request.samples && !request.contrast && !request.error) {
+    options.contrast = settings.contrast;
+    options.error = settings.error;
+  }
   options.min_throughput = request.min_throughput.value_or(0);
   options.integrator = settings.integrator;
   for (const Integrator integrator : kIntegrators) {

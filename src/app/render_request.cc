@@ -60,6 +60,8 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
              "A ray deeper than this is black; primary rays have depth 0");
   AddShare(app, "--adaptive", request.contrast, "T",
            "All samples only where neighbours differ by more than T; else one");
+  AddShare(app, "--error", request.error, "E",
+           "Samples until the error of a pixel is at most E; --spp N: N at most");
   AddShare(app, "--min-throughput,--min-weight", request.min_throughput, "W",
            "Rays that add at most this part of what they see are not traced");
   AddParsed(app, "--crop", request.crop, "x0,y0,x1,y1",

@@ -40,7 +40,7 @@ struct RenderRequest {
   std::optional<PixelSize> size;
   std::string integrator;  // empty: the scene's
   std::optional<int> samples, max_depth;
-  std::optional<double> contrast, min_throughput;
+  std::optional<double> error, contrast, min_throughput;
   std::string target = "auto";
   std::string precision = "strict";
   std::optional<int> threads, bits, tile_size;

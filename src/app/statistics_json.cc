@@ -76,6 +76,7 @@ Json FrameJson(const FrameRecord& frame) {
   if (frame.resumed_rows > 0) json["resumed_rows"] = frame.resumed_rows;
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
   if (options.integrator) json["integrator"] = IntegratorName(*options.integrator);
+  if (options.error) json["error"] = *options.error;
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;
   if (options.crop) {

@@ -22,6 +22,7 @@ constexpr NumberRange kImageSide{1.0, kMaxImageSide, "an integer in [1, 65536]"}
 constexpr NumberRange kSampleCount{1.0, kMaxSamples, "an integer in [1, 65536]"};
 constexpr NumberRange kDepthLimit{0.0, kMaxDepth, "an integer in [0, 1000000]"};
 constexpr NumberRange kContrast{0.0, 1.0, "a number in [0, 1]"};
+constexpr NumberRange kError{kSmallestPositive, 1.0, "a number in (0, 1]"};
 constexpr NumberRange kRotation{-1e6, 1e6, "a number in [-1e6, 1e6]"};
 constexpr NumberRange kStops{-kMaxEv, kMaxEv, "a number in [-64, 64], or \"auto\""};
 constexpr NumberRange kExposure{kSmallestPositive, 1e6, "a number in (0, 1e6]"};
@@ -146,6 +147,11 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
     double contrast = 0;
     if (adaptive.Read(kContrast, &contrast)) settings.contrast = contrast;
   }
+  if (const JsonCursor error = object.Optional("error"); error.present()) {
+    double most = 0;
+    if (error.Read(kError, &most)) settings.error = most;
+    if (settings.contrast) error.Fail("conflicts with \"adaptive\"");
+  }
   object.Optional("max_depth").ReadInteger(kDepthLimit, &settings.max_depth);
   const JsonCursor srgb = object.Optional("srgb");
   bool is_srgb = false;  // absent: as "pictures"
@@ -187,6 +193,7 @@ Json SettingsJson(const Settings& settings) {
                {"background", VectorJson(settings.background)},
                {"exposure", settings.exposure}};
   if (settings.contrast) json["adaptive"] = *settings.contrast;
+  if (settings.error) json["error"] = *settings.error;
   if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
   if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");

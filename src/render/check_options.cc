@@ -32,6 +32,10 @@ std::string Complaint(const RenderOptions& options) {
   if (options.contrast && !(*options.contrast >= 0 && *options.contrast <= 1)) {
     return "contrast must lie in [0, 1]";
   }
+  if (options.error && !(*options.error > 0 && *options.error <= 1)) {
+    return "error must lie in (0, 1]";
+  }
+  if (options.error && options.contrast) return "contrast and error exclude each other";
   if (options.precision == Precision::kFast && options.target.is_scalar()) {
     return "fast precision needs a SIMD target";
   }
@@ -53,7 +57,10 @@ Result<RenderOptions> CheckOptions(const RenderOptions& options, const Settings&
     if (option == kFromScene) option = setting;
   };
   // Sampling is the scene's or the caller's as a whole.
-  if (options.samples == kFromScene && !options.contrast) checked.contrast = settings.contrast;
+  if (options.samples == kFromScene && !options.contrast && !options.error) {
+    checked.contrast = settings.contrast;
+    checked.error = settings.error;
+  }
   settle(checked.width, settings.width);
   settle(checked.height, settings.height);
   settle(checked.samples, settings.samples);

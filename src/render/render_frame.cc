@@ -63,7 +63,10 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   if (const Status built = geometry.BuildTree(options.threads); !built.ok()) {
     return Error{ErrorKind::kScene, built.error().message};
   }
-  for (const glm::dvec2& point : SamplePattern(options.samples, scene.settings.filter)) {
+  const PixelFilter filter = scene.settings.filter;
+  const auto pattern = options.error ? SobolPattern(options.samples, filter)
+                                     : SamplePattern(options.samples, filter);
+  for (const glm::dvec2& point : pattern) {
     frame->sample_x.push_back(static_cast<Real>(point.x));
     frame->sample_y.push_back(static_cast<Real>(point.y));
   }
@@ -91,6 +94,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
                   [](const MaterialData<Real>& material) { return material.attenuates; }),
       static_cast<Real>(1 / placement.scale)};
   if (integrator == Integrator::kWhitted) frame->view.camera.lens = LensUse::kNone;
+  frame->view.error = static_cast<Real>(options.error.value_or(0));
   frame->view.follows_paths = integrator == Integrator::kPath;
   frame->view.is_distributed = IsDistributed(frame->view);
   // With adaptive sampling a pixel's only sample stands for all of it.

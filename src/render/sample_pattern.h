@@ -15,6 +15,10 @@ namespace sheaf {
 // beyond the pixel's edges. Correctly rounded operations alone, so the same bits everywhere.
 std::vector<glm::dvec2> SamplePattern(int count, PixelFilter filter = PixelFilter::kBox);
 
+// The same of Sobol's sequence, whose first points are spread evenly however many there will be;
+// the first lies at the centre.
+std::vector<glm::dvec2> SobolPattern(int count, PixelFilter filter = PixelFilter::kBox);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_RENDER_SAMPLE_PATTERN_H_

@@ -43,8 +43,9 @@ void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, F
   order_.Arrange(is_adaptive ? scalar::WithNeighbours(frame_, tile) : tile);
   if (records) first_hits_.Start(order_.pixels().count);
   RenderSample(order_.pixels(), 0, records ? &first_hits_ : nullptr);
-  if (frame_.sample_x.size() > 1) means_.Start(sample_.view(), order_.pixels().count);
-  if (is_adaptive) {
+  if (frame_.converges()) {
+    RefineUntilConverged();
+  } else if (is_adaptive) {
     RefineEdges(tile);
   } else if (frame_.sample_x.size() > 1) {
     RefineAll();
@@ -190,6 +191,7 @@ void TileRenderer<Real>::ChooseRays(const PathView<Real>& parents, int depth,
 template <typename Real>
 void TileRenderer<Real>::RefineAll() {
   const std::size_t samples = frame_.sample_x.size();
+  means_.Start(sample_.view(), order_.pixels().count);
   for (std::size_t i = 1; i < samples && !IsStopped(); ++i) {
     RenderSample(order_.pixels(), i, nullptr);
     means_.Add(sample_.view());
@@ -201,6 +203,7 @@ void TileRenderer<Real>::RefineAll() {
 // src/scalar/render_adaptively.h: they are worth it where there are edges.
 template <typename Real>
 void TileRenderer<Real>::RefineEdges(const PixelRect& tile) {
+  means_.Start(sample_.view(), order_.pixels().count);
   first_hits_.RecordColours(sample_.view());
   edges_.Find(order_, tile, first_hits_.hits(), frame_.contrast);
   clock_.Charge(Phase::kAccumulate);
@@ -213,13 +216,31 @@ void TileRenderer<Real>::RefineEdges(const PixelRect& tile) {
   means_.DivideAt(edges_.positions(), static_cast<int>(samples));
 }
 
+template <typename Real>
+void TileRenderer<Real>::RefineUntilConverged() {
+  converging_.Start(order_.pixels(), sample_.view());
+  const std::size_t samples = frame_.sample_x.size();
+  for (std::size_t i = 1; i < samples && converging_.pixels().count > 0 && !IsStopped(); ++i) {
+    RenderSample(converging_.pixels(), i, nullptr);
+    converging_.Add(sample_.view(), frame_.error);
+    clock_.Charge(Phase::kAccumulate);
+  }
+  converging_.Divide();
+}
+
+template <typename Real>
+ColourView<Real> TileRenderer<Real>::means() const {
+  if (frame_.converges()) return converging_.view();
+  return frame_.sample_x.size() > 1 ? means_.view() : sample_.view();
+}
+
 // ---- The film and the buffers ----
 
 // Row by row, so that a line of the film's memory is written at once.
 template <typename Real>
 void TileRenderer<Real>::WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film) {
   const bool has_layers = HasFirstHitLayers(film);
-  const auto mean = frame_.sample_x.size() > 1 ? means_.view() : sample_.view();
+  const ColourView<Real> mean = means();
   for (int y = tile.y0; y < tile.y1; ++y) {
     float* rgb = film.pixel(tile.x0 - film_x, y - film_y);
     for (int x = tile.x0; x < tile.x1; ++x, rgb += 3) {
@@ -237,7 +258,8 @@ template <typename Real>
 std::size_t TileRenderer<Real>::buffer_bytes() const {
   std::size_t sum = 0;
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
-  add(binner_, samples_, lights_, order_, sample_, means_, first_hits_, edges_, primary_);
+  add(binner_, samples_, lights_, order_, sample_, means_, converging_, first_hits_, edges_,
+      primary_);
   for (const auto& queues : {std::span(queues_), std::span(next_queues_)}) {
     for (const RayQueue<Real>& queue : queues) add(queue);
   }

@@ -17,6 +17,7 @@
 #include "src/render/ray_queue.h"
 #include "src/render/record_first_hits.h"
 #include "src/render/sample_source.h"
+#include "src/render/sample_until.h"
 #include "src/render/shade_lights.h"
 #include "src/render/tile_worker.h"
 #include "src/stream/frame_view.h"
@@ -58,6 +59,9 @@ class TileRenderer : public TileWorker {
   RayQueue<Real>& next(ChildKind kind) { return next_queues_[static_cast<std::size_t>(kind)]; }
   void RefineEdges(const PixelRect& tile);
   void RefineAll();
+  void RefineUntilConverged();
+  // Of the samples of the ordered pixels.
+  ColourView<Real> means() const;
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
   bool IsStopped() const { return stop_.load(std::memory_order_relaxed); }
 
@@ -73,6 +77,7 @@ class TileRenderer : public TileWorker {
   PixelOrder<Real> order_;             // of the tile, or of it and its neighbours
   ColourStream<Real> sample_;          // by pixel of the list that is traced
   SampleMeans<Real> means_;            // by ordered pixel, where there are several samples
+  ConvergingMeans<Real> converging_;   // likewise, where their number is not settled
   FirstHitRecorder<Real> first_hits_;  // by ordered pixel
   EdgeFinder<Real> edges_;
 

@@ -17,6 +17,7 @@
 #include "src/scalar/attenuate.h"
 #include "src/scalar/camera_ray.h"
 #include "src/scalar/choose_lobe.h"
+#include "src/scalar/converge.h"
 #include "src/scalar/environment.h"
 #include "src/scalar/finish.h"
 #include "src/scalar/footprint.h"
@@ -224,17 +225,25 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
 }
 
 // Rubbish after `stop` was set, which ends any pixel soon. The mean of the pixel's samples, added
-// up in the order of the pattern. Leaves in `first`, unless that is null, what the first one hit.
+// up in the order of the pattern; with an error to reach, of as many as that takes. Leaves in
+// `first`, unless that is null, what the first one hit.
 template <typename Real>
 Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<Real>& scratch,
                        RayCounts& tally, const std::atomic<bool>& stop,
                        FirstHit<Real>* first = nullptr) {
-  Vec3<Real> sum = {0, 0, 0};
-  const std::size_t samples = frame.sample_x.size();
-  for (std::size_t i = 0; i < samples; ++i) {
-    sum = sum + RenderSample(frame, x, y, i, scratch, tally, stop, i == 0 ? first : nullptr);
+  Vec3<Real> sum = {0, 0, 0}, squares = {0, 0, 0};
+  std::uint32_t count = 0;
+  while (count < frame.sample_x.size()) {
+    const Vec3<Real> colour =
+        RenderSample(frame, x, y, count, scratch, tally, stop, count == 0 ? first : nullptr);
+    ++count;
+    sum = sum + colour;
+    squares = squares + MultiplyColours(colour, colour);
+    if (frame.converges() && IsJudgedAt(count) && IsConverged(sum, squares, count, frame.error)) {
+      break;
+    }
   }
-  return sum / static_cast<Real>(samples);
+  return sum / static_cast<Real>(count);
 }
 
 }  // namespace sheaf::scalar

@@ -288,6 +288,8 @@ void Check(const Settings& settings, FirstFault& fault) {
   fault.Number("height", settings.height, {1, kMaxImageSide, "a number in [1, 65536]"});
   fault.Number("samples", settings.samples, {1, kMaxSamples, "a number in [1, 65536]"});
   if (settings.contrast) fault.Number("adaptive", *settings.contrast, kShare);
+  if (settings.error) fault.Number("error", *settings.error, {kSmallest, 1, "a number in (0, 1]"});
+  if (settings.contrast && settings.error) fault.Fail("adaptive and error exclude each other");
   fault.Number("max_depth", settings.max_depth, {0, kMaxDepth, "a number in [0, 1000000]"});
   fault.Components("background", settings.background, kAtLeastZero);
   if (settings.environment) Check(*settings.environment, fault);

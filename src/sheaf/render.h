@@ -59,6 +59,10 @@ struct RenderOptions {
   // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
   // colours that differ by more than this are one, in [0, 1]. The scene's where samples are.
   std::optional<double> contrast;
+  // Where given, above 0: a pixel gets samples until the standard error of its mean, by its
+  // samples' variance, is at most this in each channel, or as a part of a channel above 1; it gets
+  // 16 at least and `samples` at most. Not together with `contrast`. The scene's where samples are.
+  std::optional<double> error;
   // How light is followed; absent: the scene's.
   std::optional<Integrator> integrator;
   // The pixels to render, a rectangle inside the picture that is not empty. The film holds them

@@ -407,6 +407,8 @@ struct Settings {
   int samples = 1;                // a pixel, [1, kMaxSamples]
   // Where given: more than a pixel's first sample only at edges, see RenderOptions::contrast.
   std::optional<double> contrast = std::nullopt;
+  // Where given: samples until a pixel's error is small, see RenderOptions::error. Not both.
+  std::optional<double> error = std::nullopt;
   int max_depth = 5;  // a ray deeper than this is black; primary rays have depth 0
   Colour background{0.0};
   std::optional<Environment> environment = std::nullopt;  // instead of the background

@@ -57,6 +57,9 @@ struct FrameView {
   bool is_distributed = false;
   bool follows_paths = false;  // one ray of each surface alone
 
+  Real error = 0;  // that a pixel's mean may have, above 0; 0: all samples are taken
+
+  bool converges() const { return error > 0 && sample_x.size() > 1; }
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
 };
 
