@@ -76,6 +76,8 @@ void ChooseLobesLanes(const MaterialData<Real>& material, const SurfaceView<Real
       const V dim = hn::IfThenElse(hn::Gt(all, least), all, least);
       survival = hn::IfThenElse(hn::Lt(all, one), dim, one);
     }
+    const V likely = hn::Div(hn::Mul(diffuse, survival), all);
+    hn::StoreU(hn::IfThenElseZero(hn::Gt(all, zero), likely), d, choices.scatter + i);
     const V pick = hn::Div(hn::Mul(hn::LoadU(d, points.u + i), all), survival);
     const auto reflects_here = hn::Lt(pick, reflect);
     const auto goes_through = hn::AndNot(reflects_here, hn::Lt(pick, through));

@@ -7,10 +7,10 @@
 
 namespace sheaf {
 
-// Writes choices.choice_reflect and so on of surfaces[0, count) of a material with kNeedsChoice.
-// `parents` gives the throughputs of the ray stream, null pointers there stand for 1; `points` a
-// random number for each surface, u. Bits: as sheaf::scalar::ChooseLobe. Reads and writes
-// PaddedCount(count) lanes.
+// Writes choices.choice_reflect and so on, and choices.scatter, of surfaces[0, count) of a material
+// with kNeedsChoice. `parents` gives the throughputs of the ray stream, null pointers there stand
+// for 1; `points` a random number for each surface, u. Bits: as sheaf::scalar::ChooseLobe. Reads
+// and writes PaddedCount(count) lanes.
 template <typename Real>
 using ChooseLobesKernel = void(const MaterialData<Real>& material,
                                const SurfaceView<Real>& surfaces, const PathView<Real>& parents,

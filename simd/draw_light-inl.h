@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "simd/frame-inl.h"
+#include "simd/sample_terms.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
 #include "simd/warp-inl.h"
@@ -105,6 +106,71 @@ HWY_INLINE void LookAtSun(D d, const LightData<Real>& light, V u, V v, V& lx, V&
   falloff = hn::Set(d, Real(1));
 }
 
+// LookAtEmitters, as LookAtFlat, with the density of the points and their colours.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Mask<D> LookAtEmitters(D d, const EmitterView<Real>& emitters,
+                                      const SurfaceView<Real>& surfaces, std::uint32_t i, V u, V v,
+                                      V& lx, V& ly, V& lz, V& ex, V& ey, V& ez, V& falloff,
+                                      V& density, const IncidenceOutput<Real>& incidence) {
+  const hn::RebindToSigned<D> ds;
+  const V one = hn::Set(d, Real(1));
+  const V last = hn::Set(d, static_cast<Real>(emitters.count - 1));
+  const V along = hn::Mul(u, hn::Set(d, static_cast<Real>(emitters.count)));
+  const V floor = hn::Floor(along);
+  const V cell = hn::IfThenElse(hn::Lt(floor, last), floor, last);
+  const auto in_cell = hn::ConvertTo(ds, cell);
+  const V part = hn::Sub(along, cell), threshold = GatherAt(d, emitters.threshold, in_cell);
+  const auto is_own = hn::Lt(part, threshold);
+  const V number = hn::IfThenElse(is_own, cell, GatherAt(d, emitters.alias, in_cell));
+  const V above = hn::Div(hn::Sub(part, threshold), hn::Sub(one, threshold));
+  const V rest = hn::IfThenElse(is_own, hn::Div(part, threshold), above);
+  const auto at = hn::ConvertTo(ds, number);
+  const V side = hn::Sqrt(rest), second = hn::Mul(side, v), first = hn::Sub(side, second);
+  const auto drawn = [&](int axis) SHEAF_LAMBDA {
+    const V across = hn::Add(hn::Mul(GatherAt(d, emitters.edge1[axis], at), first),
+                             hn::Mul(GatherAt(d, emitters.edge2[axis], at), second));
+    return hn::Add(GatherAt(d, emitters.corner[axis], at), across);
+  };
+  ex = drawn(0);
+  ey = drawn(1);
+  ez = drawn(2);
+  lx = hn::Sub(ex, hn::LoadU(d, surfaces.position_x + i));
+  ly = hn::Sub(ey, hn::LoadU(d, surfaces.position_y + i));
+  lz = hn::Sub(ez, hn::LoadU(d, surfaces.position_z + i));
+  const V squared = Dot(d, lx, ly, lz, lx, ly, lz), distance = hn::Sqrt(squared);
+  lx = hn::Div(lx, distance);
+  ly = hn::Div(ly, distance);
+  lz = hn::Div(lz, distance);
+  const V nx = GatherAt(d, emitters.normal[0], at);
+  const V ny = GatherAt(d, emitters.normal[1], at);
+  const V nz = GatherAt(d, emitters.normal[2], at);
+  const V cosine = Dot(d, lx, ly, lz, nx, ny, nz), size = hn::Abs(cosine);
+  const V offset = hn::CopySign(GatherAt(d, emitters.offset, at), cosine);
+  ex = hn::Sub(ex, hn::Mul(nx, offset));
+  ey = hn::Sub(ey, hn::Mul(ny, offset));
+  ez = hn::Sub(ez, hn::Mul(nz, offset));
+  hn::StoreU(GatherAt(d, emitters.rgb[0], at), d, incidence.r + i);
+  hn::StoreU(GatherAt(d, emitters.rgb[1], at), d, incidence.g + i);
+  hn::StoreU(GatherAt(d, emitters.rgb[2], at), d, incidence.b + i);
+  density = GatherAt(d, emitters.density, at);
+  falloff = hn::Div(squared, size);
+  return hn::And(IsNormalSquare(d, squared), hn::Gt(size, hn::Zero(d)));
+}
+
+// Multiplies the colours of emitters' light by the weight of having drawn it: PowerWeight.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE void WeighDrawn(D d, const SurfaceView<Real>& surfaces, std::uint32_t i, V n_dot_l,
+                           V falloff, V density, const IncidenceOutput<Real>& incidence) {
+  const V one = hn::Set(d, Real(1));
+  const V ray_density =
+      hn::Mul(hn::LoadU(d, surfaces.scatter + i), hn::Mul(n_dot_l, hn::Set(d, kInversePi<Real>)));
+  const V other = hn::Div(ray_density, hn::Mul(density, falloff));
+  const V weight = hn::Div(one, hn::Add(one, hn::Mul(other, other)));
+  for (Real* const field : {incidence.r, incidence.g, incidence.b}) {
+    hn::StoreU(hn::Mul(hn::LoadU(d, field + i), weight), d, field + i);
+  }
+}
+
 // IncidenceOf with LookAt, for lights that have a size: the unit vector to the point drawn, its
 // cosine with the normal (0 where there is no light) and what the light is divided by. Stores the
 // points.
@@ -113,11 +179,14 @@ HWY_INLINE void DrawIncidence(D d, const LightData<Real>& light, const SurfaceVi
                               const SampleView<Real>& points, std::uint32_t i, V& lx, V& ly, V& lz,
                               V& n_dot_l, V& falloff, const IncidenceOutput<Real>& incidence) {
   const V u = hn::LoadU(d, points.u + i), v = hn::LoadU(d, points.v + i);
-  V ex = hn::Zero(d), ey = ex, ez = ex;
+  V ex = hn::Zero(d), ey = ex, ez = ex, density = ex;
   auto is_light = AllLanes(d);
   if (light.shape == LightShape::kSun) {
     LookAtSun(d, light, u, v, lx, ly, lz, falloff);
     ex = lx, ey = ly, ez = lz;
+  } else if (light.shape == LightShape::kEmitters) {
+    is_light = LookAtEmitters(d, *light.emitters, surfaces, i, u, v, lx, ly, lz, ex, ey, ez,
+                              falloff, density, incidence);
   } else if (light.shape == LightShape::kSphere) {
     is_light = LookAtSphere(d, light, surfaces, i, u, v, lx, ly, lz, ex, ey, ez, falloff);
   } else {
@@ -126,6 +195,9 @@ HWY_INLINE void DrawIncidence(D d, const LightData<Real>& light, const SurfaceVi
   const V cosine = Dot(d, hn::LoadU(d, surfaces.normal_x + i), hn::LoadU(d, surfaces.normal_y + i),
                        hn::LoadU(d, surfaces.normal_z + i), lx, ly, lz);
   n_dot_l = hn::IfThenElseZero(is_light, cosine);
+  if (light.shape == LightShape::kEmitters) {
+    WeighDrawn(d, surfaces, i, n_dot_l, falloff, density, incidence);
+  }
   hn::StoreU(ex, d, incidence.end_x + i);
   hn::StoreU(ey, d, incidence.end_y + i);
   hn::StoreU(ez, d, incidence.end_z + i);

@@ -3,8 +3,12 @@
 #define SHEAF_SIMD_SAMPLE_TERMS_H_
 
 #include <cstdint>
+#include <numbers>
 
 namespace sheaf {
+
+template <typename Real>
+inline constexpr Real kInversePi = static_cast<Real>(std::numbers::inv_pi);
 
 // What a sample is drawn for: each use has numbers of its own. Lights follow one another from
 // kLightDimension on.

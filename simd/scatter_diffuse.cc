@@ -9,14 +9,15 @@
 #include "simd/dispatch.h"
 #include "simd/frame-inl.h"
 #include "simd/material-inl.h"
+#include "simd/sample_terms.h"
 #include "simd/warp-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
-// A unit vector about the normal as often as its cosine with it.
+// A unit vector about the normal as often as its cosine with it, which is returned.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE void DrawByCosine(D d, V nx, V ny, V nz, V u, V v, V& x, V& y, V& z) {
+HWY_INLINE V DrawByCosine(D d, V nx, V ny, V nz, V u, V v, V& x, V& y, V& z) {
   V xx, xy, xz, yx, yy, yz, a, b;
   MakeFrame(d, nx, ny, nz, xx, xy, xz, yx, yy, yz);
   DiskPoint(d, u, v, a, b);
@@ -24,6 +25,7 @@ HWY_INLINE void DrawByCosine(D d, V nx, V ny, V nz, V u, V v, V& x, V& y, V& z) 
   x = hn::Add(hn::Add(hn::Mul(xx, a), hn::Mul(yx, b)), hn::Mul(nx, c));
   y = hn::Add(hn::Add(hn::Mul(xy, a), hn::Mul(yy, b)), hn::Mul(ny, c));
   z = hn::Add(hn::Add(hn::Mul(xz, a), hn::Mul(yz, b)), hn::Mul(nz, c));
+  return c;
 }
 
 template <typename Real>
@@ -64,7 +66,10 @@ std::uint32_t ScatterDiffuseLanes(const MaterialData<Real>& material,
     const V fz = hn::LoadU(d, surfaces.face_z + i);
     const V offset = hn::LoadU(d, surfaces.offset + i);
     V x, y, z;
-    DrawByCosine(d, nx, ny, nz, hn::LoadU(d, points.u + i), hn::LoadU(d, points.v + i), x, y, z);
+    const V cosine = DrawByCosine(d, nx, ny, nz, hn::LoadU(d, points.u + i),
+                                  hn::LoadU(d, points.v + i), x, y, z);
+    const V density =
+        hn::Mul(hn::LoadU(d, surfaces.scatter + i), hn::Mul(cosine, hn::Set(d, kInversePi<Real>)));
     FinishDirection(d, material, fx, fy, fz, nx, ny, nz, one, x, y, z);
     const auto order = CompactOrder(d, kept);
     const auto store = [&](V v, Real* HWY_RESTRICT field)
@@ -83,6 +88,7 @@ std::uint32_t ScatterDiffuseLanes(const MaterialData<Real>& material,
     store(wr, paths.throughput_r);
     store(wg, paths.throughput_g);
     store(wb, paths.throughput_b);
+    store(density, paths.density);
     if (material.needs & kNeedsWidth) store(hn::LoadU(d, surfaces.width + i), paths.width);
     at += CountLanes(d, kept);
   }

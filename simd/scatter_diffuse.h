@@ -7,10 +7,10 @@
 
 namespace sheaf {
 
-// As SpawnRays does, appends the diffuse ray of each of surfaces[0, count) whose choice_diffuse is
-// above 0, drawn by `points`, one a surface. Returns how many there are. Bits: as
-// sheaf::scalar::ScatterDiffuse. Reads PaddedCount(count) lanes; writes StreamCapacity(count) at
-// most.
+// As SpawnRays does, with its density besides, appends the diffuse ray of each of surfaces[0,
+// count) whose choice_diffuse is above 0, drawn by `points`, one a surface. Returns how many there
+// are. Bits: as sheaf::scalar::ScatterDiffuse. Reads PaddedCount(count) lanes; writes
+// StreamCapacity(count) at most.
 template <typename Real>
 using ScatterDiffuseKernel = std::uint32_t(const MaterialData<Real>& material,
                                            const SurfaceView<Real>& surfaces, std::uint32_t count,

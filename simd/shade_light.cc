@@ -37,7 +37,7 @@ void ShadeLightLanes(const LightData<Real>& light, const MaterialData<Real>& mat
     if (light.is_spot) attenuation = hn::Mul(attenuation, ConeShare(d, light, lx, ly, lz));
     const V diffuse = hn::Mul(LoadTerm(d, material, material.kd, surfaces.kd, i), n_dot_l);
     V highlight = hn::Zero(d);
-    if (material.needs & kNeedsHighlight) {
+    if ((material.needs & kNeedsHighlight) && light.shape != LightShape::kEmitters) {
       V hx = hn::Sub(lx, hn::LoadU(d, surfaces.direction_x + i));
       V hy = hn::Sub(ly, hn::LoadU(d, surfaces.direction_y + i));
       V hz = hn::Sub(lz, hn::LoadU(d, surfaces.direction_z + i));

@@ -74,6 +74,8 @@ struct MaterialData {
   // light that they send to one another: a table of gloss.
   Real slope_width = 0;
   const Real* gloss = nullptr;
+  // With which its triangles are drawn as a light, by area; 0: they are not.
+  Real emitter_density = 0;
   bool attenuates;  // whether light is taken inside
   Real attenuation[3], attenuation_distance;
   FinishData<Real> finish;
@@ -162,7 +164,20 @@ enum class LightKind : std::uint32_t {
 };
 
 // What is seen of a light. All but a point are drawn from: src/scalar/incidence.h.
-enum class LightShape : std::uint32_t { kPoint, kRectangle, kDisk, kSphere, kSun };
+enum class LightShape : std::uint32_t { kPoint, kRectangle, kDisk, kSphere, kSun, kEmitters };
+
+// The triangles that shine, by number: src/scalar/emitters.h.
+template <typename Real>
+struct EmitterView {
+  std::uint32_t count;
+  const Real *corner[3], *edge1[3], *edge2[3];
+  const Real* normal[3];  // unit
+  const Real* offset;     // along the normal; takes the end of a shadow ray off the triangle
+  const Real* density;    // with which a point is drawn, by area
+  const Real* rgb[3];     // what it gives when it is drawn, by the cosines and the square distance
+  // Each is drawn in the lower part of its cell, below the threshold, and its alias in the rest.
+  const Real *threshold, *alias;
+};
 
 template <typename Real>
 struct LightData {
@@ -184,6 +199,7 @@ struct LightData {
   // A rectangle's edges, a disk's half axes, or unit vectors across a sun's direction.
   Real across_u[3] = {}, across_v[3] = {};
   Real extent = 0;  // a ball's radius; 1 - cos of the half angle of a sun
+  const EmitterView<Real>* emitters = nullptr;  // of kEmitters, whose own colour is 1
 };
 
 enum class CameraModel : std::uint32_t { kPerspective, kOrthographic, kEquirectangular, kFisheye };

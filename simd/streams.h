@@ -55,10 +55,11 @@ struct PathFields {
   Field<Real> throughput_r, throughput_g, throughput_b;  // throughput since the eye
   Field<Real> width;          // of the ray's cone where it starts; with kNeedsWidth
   Field<std::uint32_t> seed;  // of its random numbers; with kNeedsSeed
+  Field<Real> density;        // with which a diffuse ray was drawn, by solid angle; null for others
 
   static constexpr auto kFields = std::make_tuple(
       &PathFields::pixel, &PathFields::parent, &PathFields::throughput_r, &PathFields::throughput_g,
-      &PathFields::throughput_b, &PathFields::width, &PathFields::seed);
+      &PathFields::throughput_b, &PathFields::width, &PathFields::seed, &PathFields::density);
 };
 
 // What TraceClosest writes: t, the primitive's id (kNoPrimitive: a miss, then t is t_max and u, v
@@ -108,6 +109,7 @@ struct SurfaceFields {
   Field<Real> facet_x, facet_y, facet_z, gloss;
   // With kNeedsChoice: what the throughputs of its rays are multiplied with, 0 for all but one.
   Field<Real> choice_reflect, choice_refract, choice_diffuse;
+  Field<Real> scatter;  // how likely the diffuse one was to be followed
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -126,7 +128,7 @@ struct SurfaceFields {
       &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
       &SurfaceFields::facet_x, &SurfaceFields::facet_y, &SurfaceFields::facet_z,
       &SurfaceFields::gloss, &SurfaceFields::choice_reflect, &SurfaceFields::choice_refract,
-      &SurfaceFields::choice_diffuse);
+      &SurfaceFields::choice_diffuse, &SurfaceFields::scatter);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.
@@ -159,11 +161,12 @@ struct IncidenceFields {
   Field<Real> cosine;               // of it and the normal; 0 where the light lies on the point
   Field<Real> falloff;              // what the light is divided by
   Field<Real> end_x, end_y, end_z;  // of lights with a size: the point drawn, or a sun's direction
+  Field<Real> r, g, b;              // of emitters: the colour of that light, weighed
 
-  static constexpr auto kFields =
-      std::make_tuple(&IncidenceFields::x, &IncidenceFields::y, &IncidenceFields::z,
-                      &IncidenceFields::cosine, &IncidenceFields::falloff, &IncidenceFields::end_x,
-                      &IncidenceFields::end_y, &IncidenceFields::end_z);
+  static constexpr auto kFields = std::make_tuple(
+      &IncidenceFields::x, &IncidenceFields::y, &IncidenceFields::z, &IncidenceFields::cosine,
+      &IncidenceFields::falloff, &IncidenceFields::end_x, &IncidenceFields::end_y,
+      &IncidenceFields::end_z, &IncidenceFields::r, &IncidenceFields::g, &IncidenceFields::b);
 };
 
 // Random points of the unit square, one an element: src/scalar/draw_sample.h.

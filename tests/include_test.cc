@@ -93,8 +93,9 @@ bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   const bool calls_kernels = layer == "src/bvh" || layer == "src/core" || layer == "src/lab";
   if (calls_kernels) return header == "simd/kernels.h";
   return layer == "src/scalar" &&
-         (header == "simd/pow_terms.h" || header == "simd/sin_cos_terms.h" ||
-          header == "simd/checker_terms.h" || header == "simd/roundoffs.h");
+         (header == "simd/pow_terms.h" || header == "simd/sample_terms.h" ||
+          header == "simd/sin_cos_terms.h" || header == "simd/checker_terms.h" ||
+          header == "simd/roundoffs.h");
 }
 
 // Whether Highway is reached from `path` through headers of the tree.

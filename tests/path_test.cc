@@ -4,10 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "same_bits.h"
 #include "sheaf/render.h"
+#include "src/render/compile_scene.h"
+#include "src/scalar/emitters.h"
 #include "test_frames.h"
 
 namespace sheaf {
@@ -113,6 +116,90 @@ TEST_CASE("an integrating sphere adds up its bounces") {
     const double mean = MeanOf(RenderOrFail(scene, scene.cameras[0], options));
     CHECK(mean == doctest::Approx(1 / (1 - share)).epsilon(5e-3));
   }
+}
+
+// ---- Lamps ----
+
+// A white floor under a lamp of radiance 1 that is a rectangle of two triangles, 2 above it.
+Scene UnderLamp(double a, double b) {
+  Scene scene;
+  scene.settings.integrator = Integrator::kPath;
+  scene.settings.max_depth = 1;
+  Material white, lamp;
+  white.kd = 1;
+  lamp.emission = Colour(1.0);
+  scene.materials = {white, lamp};
+  scene.objects = {
+      {"floor", Quad{{Vec3d(-9, 0, 9), Vec3d(9, 0, 9), Vec3d(9, 0, -9), Vec3d(-9, 0, -9)}}, 0},
+      {"lamp", Quad{{Vec3d(-a, 2, -b), Vec3d(a, 2, -b), Vec3d(a, 2, b), Vec3d(-a, 2, b)}}, 1}};
+  scene.cameras = {{"above", {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, Orthographic{0.01}}};
+  return scene;
+}
+
+// Lambert's formula for a corner: E = L / 2 * (a/A atan(b/A) + b/B atan(a/B)), A^2 = a^2 + h^2.
+double LightUnderLamp(double a, double b) {
+  const double A = std::sqrt(a * a + 4), B = std::sqrt(b * b + 4);
+  return 4 * (a / A * std::atan(b / A) + b / B * std::atan(a / B)) / 2 / std::numbers::pi;
+}
+
+TEST_CASE("lamps light what their form factor says, small ones and large") {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.samples = 256;
+  for (const auto& [a, b] : {std::pair(0.05, 0.02), std::pair(0.8, 1.7), std::pair(30.0, 20.0)}) {
+    const Scene scene = UnderLamp(a, b);
+    CAPTURE(a);
+    const double mean = MeanOf(RenderOrFail(scene, scene.cameras[0], options));
+    CHECK(mean == doctest::Approx(LightUnderLamp(a, b)).epsilon(1e-3));
+  }
+}
+
+// Drawn lamps alone are noisy near by, found ones where they are small. Both together are neither.
+TEST_CASE("a pixel under a lamp has little noise, whatever the lamp's size") {
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.samples = 16;
+  for (const double side : {0.05, 0.5, 5.0, 50.0}) {
+    const Scene scene = UnderLamp(side, side);
+    const Film film = RenderOrFail(scene, scene.cameras[0], options);
+    const double want = LightUnderLamp(side, side);
+    double squares = 0;
+    for (const float x : film.rgb) {
+      squares += (static_cast<double>(x) - want) * (static_cast<double>(x) - want);
+    }
+    CAPTURE(side);
+    CHECK(std::sqrt(squares / static_cast<double>(film.rgb.size())) <= 0.06 * want);
+  }
+}
+
+TEST_CASE("lamps of all colours and powers are drawn as often as they are bright") {
+  Scene scene = UnderLamp(1, 1);
+  Material red = scene.materials[1], off = scene.materials[0];
+  red.emission = {9, 0, 0};
+  off.kd = 0;
+  scene.materials.push_back(red);
+  scene.materials.push_back(off);
+  scene.objects.push_back({"red", Triangle{{Vec3d(5, 1, 0), Vec3d(6, 1, 0), Vec3d(5, 2, 0)}}, 2});
+  scene.objects.push_back({"dark", Triangle{{Vec3d(5, 1, 0), Vec3d(6, 1, 0), Vec3d(5, 2, 0)}}, 3});
+  const CompiledScene<double> compiled = CompileScene<double>(scene, {}, Integrator::kPath);
+  REQUIRE(compiled.emitters->view.count == 3);
+  const EmitterView<double>& emitters = compiled.emitters->view;
+  // Two triangles of area 2 and power 1, one of area 1/2 and power 3.
+  const double all = 2 + 2 + 1.5;
+  std::array<double, 3> share{};
+  constexpr int kDraws = 100000;
+  for (int i = 0; i < kDraws; ++i) {
+    const auto choice = scalar::ChooseEmitter(emitters, (i + 0.5) / kDraws);
+    REQUIRE(choice.rest >= 0);
+    REQUIRE(choice.rest <= 1);
+    share[choice.emitter] += 1.0 / kDraws;
+  }
+  CHECK(share[0] == doctest::Approx(2 / all).epsilon(1e-3));
+  CHECK(share[1] == doctest::Approx(2 / all).epsilon(1e-3));
+  CHECK(share[2] == doctest::Approx(1.5 / all).epsilon(1e-3));
+  CHECK(emitters.density[2] == doctest::Approx(3 / all));
+  CHECK(emitters.rgb[0][2] == doctest::Approx(9 / (3 / all) / std::numbers::pi));
+  CHECK(emitters.rgb[1][2] == 0);
 }
 
 // ---- An independent tracer ----

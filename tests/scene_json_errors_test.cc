@@ -166,7 +166,8 @@ const Row kMistakes[] = {
 
     // Lights.
     {Light(R"("intensity": 1)"),
-     "f:1: /lights/0: missing key; give one of \"point\", \"spot\", \"directional\""},
+     "f:1: /lights/0: missing key; give one of \"point\", \"spot\", \"directional\", "
+     "\"rectangle\", \"disk\", \"sphere\""},
     {Light(R"("point": {"position": [0, 0, 0]})"),
      "f:1: /lights/0: missing key; give one of \"E0\", \"intensity\""},
     {Light(R"("point": {"position": [0, 0, 0]}, "e0": 1)"),

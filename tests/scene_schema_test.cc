@@ -138,13 +138,13 @@ json CompleteScene() {
     "$schema": "sheaf.schema.json",
     "settings": {"size": [64, 48], "samples": 4, "adaptive": 0.1, "max_depth": 5, "background": [0.1, 0.2, 0.3],
                  "ambient": 0.5, "exposure": 0.5, "srgb": true, "ev": 1.5, "tone": "filmic",
-                 "shadows": "opaque",
+                 "shadows": "opaque", "integrator": "path", "pixel_filter": "gaussian",
                  "environment": {"gradient": {"zenith": 1, "horizon": [1, 1, 0.5], "nadir": 0}}},
     "materials": [
       {"name": "m", "base_colour": {"checker": {"even": 1, "odd": [0, 0, 0], "cells": [2, 3],
                                                     "filter": true}},
        "ambient": 0.1, "kd": 0.5, "ks": 0.5, "shininess": 10, "reflect": 0.5,
-       "transmit": [0.1, 0.2, 0.3], "ior": 1.5, "attenuation": [0.5, 1, 1],
+       "transmit": [0.1, 0.2, 0.3], "ior": 1.5, "roughness": 0.5, "attenuation": [0.5, 1, 1],
        "attenuation_distance": 2},
       {"name": "plain", "base_colour": [1, 1, 1], "emission": 0.5},
       {"name": "picture", "base_colour": {"texture": {"image": "schema-texture.png",
@@ -179,12 +179,17 @@ json CompleteScene() {
       {"spot": {"position": [9, 8, 7], "direction": [0, -1, 0.5], "inner": 5, "outer": 30,
                 "falloff": "constant"}, "intensity": 2},
       {"directional": {"direction": [0, -1, 1]}, "E0": 1},
-      {"directional": {"direction": [1, -1, 1]}, "intensity": 1}],
+      {"directional": {"direction": [1, -1, 1], "angle": 0.5}, "intensity": 1},
+      {"rectangle": {"center": [0, 5, 0], "u": [1, 0, 0], "v": [0, 0, 2]}, "intensity": 1,
+       "samples": 4},
+      {"disk": {"center": [0, 5, 0], "radius": 0.5, "direction": [0, -1, 0]}, "intensity": 1},
+      {"sphere": {"center": [0, 5, 0], "radius": 0.5}, "intensity": 1}],
     "cameras": [
       {"name": "p", "eye": [0, 0, 9], "look_at": [0, 0, 0], "up": [0, 1, 0.5], "fov_y": 40,
+       "lens": {"f_stop": 2.8, "sensor": 0.03, "focus": 8, "blades": 5, "rotation": 10},
        "path": [{"frame": 0}, {"frame": 9.5, "eye": [1, 0, 9], "look_at": [0, 1, 0], "fov_y": 20}]},
       {"name": "o", "eye": [0, 0, 9], "look_at": [0, 0, 0], "orthographic": {"height": 3},
-       "path": [{"frame": 0, "height": 4}]},
+       "lens": {"aperture": 0.2}, "path": [{"frame": 0, "height": 4}]},
       {"name": "n", "eye": [0, 0, 9], "look_at": [0, 0, 0],
        "projection": {"perspective": {"fov_y": 40}}},
       {"name": "h", "eye": [0, 0, 9], "look_at": [0, 0, 0],
@@ -220,6 +225,9 @@ bool IsBeyondSchema(const std::string& message) {
                            "a scale of 0",
                            "is singular",
                            "inner must be below",
+                           "span no rectangle",
+                           "have no lens",
+                           "have an f-number",
                            "elements for",
                            "expected an integer in [0, ",
                            "neither a PNG nor"}) {
@@ -308,6 +316,12 @@ TEST_CASE("schema and reader know the same keys, types and ranges") {
       {"map", {{"image", "schema-texture.png"}, {"strength", 2}, {"rotation", 90}}}};
   REQUIRE(Outcome(mapped.dump(1)) == "ok");
   REQUIRE(validator.Validate(mapped));
+
+  json measured = complete;
+  measured["settings"].erase("adaptive");
+  measured["settings"]["error"] = 0.02;
+  REQUIRE(Outcome(measured.dump(1)) == "ok");
+  REQUIRE(validator.Validate(measured));
 
   // No key of the schema is missing from the complete scenes, which the reader accepts.
   std::set<const json*> properties;

@@ -27,6 +27,9 @@ struct Exception {
 
 const Exception kExceptions[] = {
     // Kernels of one piece: their vectors would have to be handed over one by one to be split.
+    {"simd/draw_facets.cc", "DrawFacet"},
+    {"simd/generate_primary.cc", "LookThroughLens"},
+    {"simd/scatter_diffuse.cc", "DrawByCosine"},
     {"simd/spawn_rays.cc", "SpawnRaysLanes"},
     {"simd/sphere_surface.cc", "FetchHits"},
     {"simd/find_footprints.cc", "ExtentAlong"},

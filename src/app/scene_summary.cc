@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <variant>
+#include <vector>
 
 #include "src/scene/projection.h"
 #include "src/scene/shapes.h"
@@ -13,6 +14,25 @@ namespace sheaf {
 namespace {
 
 bool IsBlack(const Colour& colour) { return colour == Colour(0.0); }
+
+// What is sampled, and the kinds of cameras.
+void AddSampling(const Scene& scene, const std::vector<const Material*>& used,
+                 std::vector<Feature>& features) {
+  const auto any_camera = [&](auto test) {
+    return std::any_of(scene.cameras.begin(), scene.cameras.end(), test);
+  };
+  features.push_back({"rough reflection and refraction",
+                      std::any_of(used.begin(), used.end(),
+                                  [](const Material* m) { return m->roughness > 0.0; })});
+  features.push_back(
+      {"depth of field", any_camera([](const Camera& camera) { return camera.lens.has_value(); })});
+  for (const ProjectionKind& kind : kProjectionKinds) {
+    const auto is_kind = [&](const Camera& c) { return &KindOf(c.projection) == &kind; };
+    features.push_back({fmt::format("{} cameras", kind.name), any_camera(is_kind)});
+  }
+  features.push_back({"several samples a pixel", scene.settings.samples > 1});
+  features.push_back({"sRGB transfer", scene.settings.transfer == Transfer::kSrgb});
+}
 
 }  // namespace
 
@@ -39,9 +59,6 @@ SceneSummary Summarize(const Scene& scene) {
   };
   const auto any_light = [&](auto test) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), test);
-  };
-  const auto any_camera = [&](auto test) {
-    return std::any_of(scene.cameras.begin(), scene.cameras.end(), test);
   };
   const bool has_environment = scene.settings.environment.has_value();
   const Colour ambient_light =
@@ -91,16 +108,7 @@ SceneSummary Summarize(const Scene& scene) {
       {"refraction and Fresnel reflection",
        any_material([](const Material& m) { return !IsBlack(m.transmit); })},
   };
-  summary.features.push_back({"rough reflection and refraction",
-                              any_material([](const Material& m) { return m.roughness > 0.0; })});
-  summary.features.push_back(
-      {"depth of field", any_camera([](const Camera& c) { return c.lens.has_value(); })});
-  for (const ProjectionKind& kind : kProjectionKinds) {
-    const auto is_kind = [&](const Camera& c) { return &KindOf(c.projection) == &kind; };
-    summary.features.push_back({fmt::format("{} cameras", kind.name), any_camera(is_kind)});
-  }
-  summary.features.push_back({"several samples a pixel", scene.settings.samples > 1});
-  summary.features.push_back({"sRGB transfer", scene.settings.transfer == Transfer::kSrgb});
+  AddSampling(scene, used, summary.features);
   return summary;
 }
 

@@ -247,6 +247,21 @@ void FollowOneRay(MaterialData<Real>& data) {
   if (data.needs & kNeedsChildren) data.needs |= kNeedsChoice;
 }
 
+// What shines is a light too, whose points are drawn.
+template <typename Real>
+void AddEmitters(CompiledScene<Real>& compiled) {
+  compiled.emitters = std::make_unique<EmitterTable<Real>>();
+  CompileEmitters<Real>(compiled.objects, compiled.materials, *compiled.emitters);
+  if (compiled.emitters->view.count == 0) return;
+  LightData<Real> light{};
+  light.kind = LightKind::kPointFromSurface;
+  light.shape = LightShape::kEmitters;
+  light.casts_shadows = 1;
+  light.emitters = &compiled.emitters->view;
+  for (Real& channel : light.rgb) channel = 1;
+  compiled.lights.push_back(light);
+}
+
 }  // namespace
 
 Colour AmbientLightOf(const Settings& settings) {
@@ -291,7 +306,8 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
     if (integrator == Integrator::kWhitted) ShrinkToMiddle(compiled.lights.back());
   }
-  if (scene.lights.empty()) {
+  if (integrator == Integrator::kPath) AddEmitters(compiled);
+  if (compiled.lights.empty()) {
     for (auto& material : compiled.materials) material.needs &= ~(kNeedsLights | kNeedsHighlight);
   }
   Store(scene.settings.background, compiled.background);

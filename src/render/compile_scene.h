@@ -11,6 +11,7 @@
 #include "sheaf/scene.h"
 #include "simd/shading.h"
 #include "src/render/build_mip_chain.h"
+#include "src/render/compile_emitters.h"
 #include "src/render/compile_geometry.h"
 #include "src/render/compile_gloss.h"
 #include "src/render/place_scene.h"
@@ -30,6 +31,8 @@ struct CompiledScene {
   std::map<std::pair<const Image*, Transfer>, MipChain> chains;
   std::vector<Real> decode[2];  // by Transfer, 256 each; empty where no texture has it
   std::vector<LightData<Real>> lights;
+  std::unique_ptr<EmitterTable<Real>>
+      emitters;  // that one of the lights reads, where there are any
   Real background[3];
   EnvironmentData<Real> environment;
   std::shared_ptr<const FloatImage> environment_image;  // that the environment shows, or null

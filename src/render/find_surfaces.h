@@ -30,8 +30,8 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
   const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
   const std::uint64_t facets =
       bits(&Fields::facet_x, &Fields::facet_y, &Fields::facet_z, &Fields::gloss);
-  const std::uint64_t choices =
-      bits(&Fields::choice_reflect, &Fields::choice_refract, &Fields::choice_diffuse);
+  const std::uint64_t choices = bits(&Fields::choice_reflect, &Fields::choice_refract,
+                                     &Fields::choice_diffuse, &Fields::scatter);
   return ~(coordinates | faces | curves | tints | terms | widths | footprints | facets | choices) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |

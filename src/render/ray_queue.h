@@ -20,10 +20,12 @@ struct RayBatch {
   std::uint32_t count = 0;
 };
 
-// The fields of paths in frames whose materials have `needs`, as bits for Stream::Reserve.
+// The fields of paths in frames whose materials have `needs`, as bits for Stream::Reserve; diffuse
+// ones have their density besides.
 template <typename Real>
 constexpr std::uint64_t PathFieldsFor(std::uint32_t needs) {
-  return ~((needs & kNeedsWidth ? 0 : FieldBit(&PathView<Real>::width)) |
+  return ~(FieldBit(&PathView<Real>::density) |
+           (needs & kNeedsWidth ? 0 : FieldBit(&PathView<Real>::width)) |
            (needs & kNeedsSeed ? 0 : FieldBit(&PathView<Real>::seed)));
 }
 

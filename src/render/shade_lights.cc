@@ -14,14 +14,19 @@ void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceV
   constexpr std::uint64_t kEnds = FieldBit(&IncidenceView<Real>::end_x) |
                                   FieldBit(&IncidenceView<Real>::end_y) |
                                   FieldBit(&IncidenceView<Real>::end_z);
+  constexpr std::uint64_t kColours = FieldBit(&IncidenceView<Real>::r) |
+                                     FieldBit(&IncidenceView<Real>::g) |
+                                     FieldBit(&IncidenceView<Real>::b);
   for (std::size_t i = 0; i < frame_.lights.size(); ++i) {
     const LightData<Real>& light = frame_.lights[i];
     if (light.shape == LightShape::kPoint) {
-      incidence_.Reserve(count, ~kEnds);
+      incidence_.Reserve(count, ~(kEnds | kColours));
       ShadeOne(light, material, surfaces, {}, count, colours);
       continue;
     }
-    incidence_.Reserve(count);
+    const bool is_emitters = light.shape == LightShape::kEmitters;
+    if (is_emitters && !(material.needs & kNeedsChoice)) continue;
+    incidence_.Reserve(count, is_emitters ? ~std::uint64_t{0} : ~kColours);
     const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
     for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
       const SampleView<Real> points = samples_.DrawForSurfaces(dimension, draw, light.samples);
@@ -41,10 +46,24 @@ void LightShader<Real>::ShadeOne(const LightData<Real>& light, const MaterialDat
   const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
   if (lit == 0) return;
   const bool has_shares = frame_.passes_light && light.casts_shadows;
-  const ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
+  ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
+  if (light.shape == LightShape::kEmitters) shares = SharesOfEmitters(count);
   kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), shares, count,
                        colours);
   clock_.Charge(Phase::kShade, lit, count);
+}
+
+template <typename Real>
+ColourView<Real> LightShader<Real>::SharesOfEmitters(std::uint32_t count) {
+  const IncidenceView<Real> incidence = incidence_.view();
+  if (!frame_.passes_light) return {incidence.r, incidence.g, incidence.b};
+  const ColourOutput<Real> shares = shares_.output();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    shares.r[i] = shares.r[i] * incidence.r[i];
+    shares.g[i] = shares.g[i] * incidence.g[i];
+    shares.b[i] = shares.b[i] * incidence.b[i];
+  }
+  return shares_.view();
 }
 
 template <typename Real>

@@ -12,6 +12,7 @@
 #include "src/render/find_surfaces.h"
 #include "src/render/store_layers.h"
 #include "src/render/sum_colours.h"
+#include "src/render/weigh_emission.h"
 #include "src/scalar/render_adaptively.h"
 
 namespace sheaf {
@@ -137,12 +138,17 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, int depth, ColourStr
     if (!is_all) surface_colours_.Reserve(batch.count);
     const ColourOutput<Real> shaded = is_all ? seen : surface_colours_.output();
     kernels_.shade_ambient(material, surfaces, count, shaded);
+    if (batch.paths.density && material.emitter_density > 0 &&
+        bin.kind == PrimitiveKind::kTriangle) {
+      WeighEmission(material, batch, hits_.view(), surfaces, count, shaded);
+    }
     clock_.Charge(Phase::kShade, count, count);
     if (frame_.is_distributed) samples_.StartSurfaces(batch.paths, surfaces, count);
+    if (material.needs & kNeedsChildren) ChooseRays(batch.paths, depth, material, surfaces, count);
     if (material.needs & kNeedsLights) lights_.Shade(material, surfaces, count, shaded);
     if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, seen);
     clock_.Charge(Phase::kAccumulate);
-    if (material.needs & kNeedsChildren) Spawn(batch.paths, depth, material, surfaces, count);
+    if (material.needs & kNeedsChildren) Spawn(batch.paths, material, surfaces, count);
   }
   for (std::size_t i = 0; i < kChildKinds; ++i) {
     next_queues_[i].FinishParents(batch, static_cast<ChildKind>(i), parent_order_);
@@ -151,15 +157,32 @@ void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, int depth, ColourStr
 }
 
 template <typename Real>
-void TileRenderer<Real>::Spawn(const PathView<Real>& parents, int depth,
-                               const MaterialData<Real>& material,
-                               const SurfaceView<Real>& surfaces, std::uint32_t count) {
+void TileRenderer<Real>::ChooseRays(const PathView<Real>& parents, int depth,
+                                    const MaterialData<Real>& material,
+                                    const SurfaceView<Real>& surfaces, std::uint32_t count) {
   if (material.needs & kNeedsGloss) {
     const SampleView<Real> points = samples_.DrawForSurfaces(kGlossDimension);
     kernels_.draw_facets(material, surfaces, points, count, surfaces_.output());
     clock_.Charge(Phase::kSpawn, count, count);
   }
-  if (material.needs & kNeedsChoice) ChooseRays(parents, depth, material, surfaces, count);
+  if (!(material.needs & kNeedsChoice)) return;
+  const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
+  kernels_.choose_lobes(material, surfaces, parents, samples_.DrawForSurfaces(kLobeDimension),
+                        roulette, count, surfaces_.output());
+  clock_.Charge(Phase::kSpawn, count, count);
+}
+
+template <typename Real>
+void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
+                               const SurfaceView<Real>& surfaces, std::uint32_t count) {
+  if (material.needs & kNeedsChoice) {
+    RayQueue<Real>& diffuse = next(ChildKind::kDiffuse);
+    diffuse.MakeRoom(path_fields_ | FieldBit(&PathView<Real>::density));
+    diffuse.Append(kernels_.scatter_diffuse(
+        material, surfaces, count, parents, samples_.DrawForSurfaces(kDiffuseDimension),
+        frame_.min_throughput, diffuse.next_rays(), diffuse.next_paths()));
+    clock_.Charge(Phase::kSpawn, count, count);
+  }
   RayQueue<Real>&reflected = next(ChildKind::kReflected), &refracted = next(ChildKind::kRefracted);
   reflected.MakeRoom(path_fields_);
   if (material.needs & kNeedsTransmission) refracted.MakeRoom(path_fields_);
@@ -168,21 +191,6 @@ void TileRenderer<Real>::Spawn(const PathView<Real>& parents, int depth,
       reflected.next_paths(), refracted.next_rays(), refracted.next_paths());
   reflected.Append(spawned.reflected);
   refracted.Append(spawned.refracted);
-  clock_.Charge(Phase::kSpawn, count, count);
-}
-
-template <typename Real>
-void TileRenderer<Real>::ChooseRays(const PathView<Real>& parents, int depth,
-                                    const MaterialData<Real>& material,
-                                    const SurfaceView<Real>& surfaces, std::uint32_t count) {
-  const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
-  kernels_.choose_lobes(material, surfaces, parents, samples_.DrawForSurfaces(kLobeDimension),
-                        roulette, count, surfaces_.output());
-  RayQueue<Real>& diffuse = next(ChildKind::kDiffuse);
-  diffuse.MakeRoom(path_fields_);
-  diffuse.Append(kernels_.scatter_diffuse(
-      material, surfaces, count, parents, samples_.DrawForSurfaces(kDiffuseDimension),
-      frame_.min_throughput, diffuse.next_rays(), diffuse.next_paths()));
   clock_.Charge(Phase::kSpawn, count, count);
 }
 

@@ -51,11 +51,11 @@ class TileRenderer : public TileWorker {
   // What was traced last, rays of this depth.
   void Shade(const RayBatch<Real>& batch, int depth, ColourStream<Real>& colours,
              FirstHitRecorder<Real>* recorder);
-  void Spawn(const PathView<Real>& parents, int depth, const MaterialData<Real>& material,
-             const SurfaceView<Real>& surfaces, std::uint32_t count);
-  // Where one ray of each surface is followed: which, and those that diffuse surfaces scatter.
+  // By which facets surfaces send rays on and, of paths, which of these are followed.
   void ChooseRays(const PathView<Real>& parents, int depth, const MaterialData<Real>& material,
                   const SurfaceView<Real>& surfaces, std::uint32_t count);
+  void Spawn(const PathView<Real>& parents, const MaterialData<Real>& material,
+             const SurfaceView<Real>& surfaces, std::uint32_t count);
   RayQueue<Real>& next(ChildKind kind) { return next_queues_[static_cast<std::size_t>(kind)]; }
   void RefineEdges(const PixelRect& tile);
   void RefineAll();

@@ -23,6 +23,7 @@ namespace sheaf::scalar {
 template <typename Real>
 struct Lobes {
   Real reflect = 0, refract = 0, diffuse = 0;
+  Real scatter = 0;  // how likely the diffuse one was to be followed
 };
 
 template <typename Real>
@@ -57,6 +58,7 @@ Lobes<Real> ChooseLobe(const MaterialData<Real>& material, const MaterialData<Re
   }
   const Real pick = u * all / survival;
   Lobes<Real> lobes;
+  if (all > 0) lobes.scatter = diffuse * survival / all;
   if (pick < reflect) {
     lobes.reflect = all / (reflect * survival);
   } else if (pick < through) {
@@ -75,12 +77,14 @@ Path<Real> ScatterDiffuse(const MaterialData<Real>& here, const Surface<Real>& s
                           SamplePoint<Real> point) {
   const Frame<Real> frame(surface.normal);
   const PlanePoint<Real> on_disk = DiskPoint(point);
+  const Real cosine = std::sqrt(1 - point.u);
   const Vec3<Real> direction =
-      (frame.x * on_disk.x + frame.y * on_disk.y) + surface.normal * std::sqrt(1 - point.u);
+      (frame.x * on_disk.x + frame.y * on_disk.y) + surface.normal * cosine;
   Path<Real> path{};
   path.ray = {surface.position + surface.face * surface.offset,
               Normalize(KeepOnSide(surface, direction, Real(1))), surface.source};
   path.width = surface.width;
+  path.density = surface.scatter * (cosine * kInversePi<Real>);
   const Real base_at[3] = {base.x, base.y, base.z};
   for (int i = 0; i < 3; ++i) {
     path.throughput[i] = (throughput[i] * (here.kd * base_at[i])) * share;

@@ -7,6 +7,7 @@
 
 #include "simd/shading.h"
 #include "src/scalar/draw_sample.h"
+#include "src/scalar/emitters.h"
 #include "src/scalar/frame.h"
 #include "src/scalar/surface.h"
 #include "src/scalar/warp.h"
@@ -22,6 +23,7 @@ struct Incidence {
   Real attenuation;     // 1 / (kc + kl r + kq r^2), of a spot light times its cone's share
   bool reaches;         // whether the surface faces the light, within the cone of a spot light
   Vec3<Real> end;       // of a light with a size: the point of it that was drawn
+  Vec3<Real> colour;    // of emitters: of the light that was drawn, weighed
 };
 
 // A spot light's share toward a surface that sees it along `l`: KHR_lights_punctual, "Inner and
@@ -38,6 +40,7 @@ template <typename Real>
 struct Falling {
   Real falloff = 1;
   bool is_light = true;
+  Real density = 0;  // of emitters: with which the point was drawn, by area
 };
 
 // The length of l is 1 only where the square is a normal number; an infinite one makes l 0.
@@ -116,6 +119,30 @@ Falling<Real> LookAtSun(const LightData<Real>& light, SamplePoint<Real> point,
   return {};
 }
 
+// A point of a triangle that shines to both sides; its colour is not yet weighed.
+template <typename Real>
+Falling<Real> LookAtEmitters(const EmitterView<Real>& emitters, const Surface<Real>& surface,
+                             SamplePoint<Real> point, Incidence<Real>& incidence) {
+  const EmitterChoice<Real> choice = ChooseEmitter(emitters, point.u);
+  const std::uint32_t i = choice.emitter;
+  const auto at = [&](const Real* const(&arrays)[3]) {
+    return Vec3<Real>{arrays[0][i], arrays[1][i], arrays[2][i]};
+  };
+  // Evenly on the triangle.
+  const Real along = std::sqrt(choice.rest), second = along * point.v, first = along - second;
+  const Vec3<Real> drawn =
+      at(emitters.corner) + (at(emitters.edge1) * first + at(emitters.edge2) * second);
+  incidence.to_light = drawn - surface.position;
+  const Real squared = Dot(incidence.to_light, incidence.to_light);
+  incidence.l = incidence.to_light / std::sqrt(squared);
+  const Vec3<Real> normal = at(emitters.normal);
+  const Real cosine = Dot(incidence.l, normal);
+  incidence.end = drawn - normal * std::copysign(emitters.offset[i], cosine);
+  incidence.colour = at(emitters.rgb);
+  const Real size = std::abs(cosine);
+  return {squared / size, IsNormalSquare(squared) && size > 0, emitters.density[i]};
+}
+
 template <typename Real>
 Falling<Real> LookAt(const LightData<Real>& light, const Surface<Real>& surface,
                      SamplePoint<Real> point, Incidence<Real>& incidence) {
@@ -129,6 +156,8 @@ Falling<Real> LookAt(const LightData<Real>& light, const Surface<Real>& surface,
       return LookAtSphere(light, surface, point, incidence);
     case LightShape::kSun:
       return LookAtSun(light, point, incidence);
+    case LightShape::kEmitters:
+      return LookAtEmitters(*light.emitters, surface, point, incidence);
   }
   return LookAtPoint(light, surface, incidence);
 }
@@ -141,6 +170,11 @@ Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& s
   const Falling<Real> falling = LookAt(light, surface, point, incidence);
   incidence.n_dot_l = Dot(surface.normal, incidence.l);
   if (!falling.is_light) incidence.n_dot_l = 0;
+  if (light.shape == LightShape::kEmitters) {
+    const Real ray_density = surface.scatter * (incidence.n_dot_l * kInversePi<Real>);
+    incidence.colour =
+        incidence.colour * PowerWeight(ray_density / (falling.density * falling.falloff));
+  }
   incidence.attenuation = 1 / falling.falloff;
   // Nor does a shading normal light the back of a face, but where the face is bent.
   incidence.reaches = incidence.n_dot_l > 0 && Dot(surface.face, incidence.l) > -surface.bend;

@@ -63,17 +63,29 @@ Vec3<Real> LightFrom(const FrameView<Real>& frame, const LightData<Real>& light,
     share = LightShare(frame, ShadowRay(light, at.surface, incidence));
     if (!IsLight(share)) return {0, 0, 0};
   }
+  if (light.shape == LightShape::kEmitters) share = MultiplyColours(share, incidence.colour);
   return MultiplyColours(LitBy(light, at.here, at.surface, at.base, incidence), share);
+}
+
+// What the surface's own light counts for the ray that found it.
+template <typename Real>
+Real EmissionWeight(const FrameView<Real>& frame, const Path<Real>& path, const Hit<Real>& hit,
+                    const ShadedPoint<Real>& at) {
+  const Real density = at.material.emitter_density;
+  const bool is_triangle = frame.primitives[hit.primitive].kind() == PrimitiveKind::kTriangle;
+  if (!(path.density > 0 && density > 0 && is_triangle)) return 1;
+  return FoundWeight(path.density, density, at.surface, hit.t);
 }
 
 template <typename Real>
 Vec3<Real> LocalLight(const FrameView<Real>& frame, const ShadedPoint<Real>& at, SampleKey key,
-                      RayCounts& tally) {
+                      RayCounts& tally, Real emission_weight = 1) {
   if (!HasLocalLight(at.material, at.surface)) return {0, 0, 0};
-  Vec3<Real> colour = AmbientLight(at.here, at.base);
+  Vec3<Real> colour = AmbientLight(at.here, at.base) * emission_weight;
   if (!ReactsToLight(at.material)) return colour;
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
     const LightData<Real>& light = frame.lights[i];
+    if (light.shape == LightShape::kEmitters && !(at.material.needs & kNeedsChoice)) continue;
     const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
     for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
       SamplePoint<Real> drawn;
@@ -104,14 +116,17 @@ Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Rea
   return surface;
 }
 
-// The rays that the surface sends on: those of mirror and interface, or one ray of a path. Leaves
-// in the surface the facet that they were sent on by.
 template <typename Real>
-void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key, int depth,
-            const ShadedPoint<Real>& at, std::vector<Path<Real>> (&children)[kChildKinds]) {
+bool SendsRays(const FrameView<Real>& frame, const MaterialData<Real>& here) {
+  return SpawnsRays(here) || (frame.follows_paths && here.kd > 0);
+}
+
+// Leaves in the surface the facet that rays are sent on by. Of a path, which ray that will be.
+template <typename Real>
+Lobes<Real> ChooseRays(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key,
+                       int depth, const ShadedPoint<Real>& at) {
   const auto& [material, here, base, surface] = at;
-  const bool scatters = frame.follows_paths && here.kd > 0;
-  if (!SpawnsRays(here) && !scatters) return;
+  if (!SendsRays(frame, here)) return {};
   const auto draw = [&](std::uint32_t dimension) {
     return DrawSample<Real>(key.seed, key.index, dimension);
   };
@@ -119,23 +134,36 @@ void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key,
     surface.facet = DrawFacet(material.slope_width, surface, draw(kGlossDimension));
     surface.gloss = GlossAt(material, surface);
   }
-  Spawned<Real> spawned = Spawn(here, surface, path.throughput);
+  if (!frame.follows_paths) return {};
+  const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
+  const Lobes<Real> lobes =
+      ChooseLobe(material, here, surface, base, path.throughput, roulette, draw(kLobeDimension).u);
+  surface.scatter = lobes.scatter;
+  return lobes;
+}
+
+// The rays that the surface sends on: those of mirror and interface, or the one that was chosen.
+template <typename Real>
+void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key,
+            const Lobes<Real>& lobes, const ShadedPoint<Real>& at,
+            std::vector<Path<Real>> (&children)[kChildKinds]) {
+  const auto& [material, here, base, surface] = at;
+  if (!SendsRays(frame, here)) return;
   const auto append = [&](ChildKind kind, Path<Real>& child) {
     if (!child.counts(frame.min_throughput)) return;
     if (frame.is_distributed) child.seed = ChildSeed(path.seed, kind);
     children[static_cast<std::size_t>(kind)].push_back(child);
   };
+  Spawned<Real> spawned = Spawn(here, surface, path.throughput);
   if (frame.follows_paths) {
-    const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
-    const Lobes<Real> lobes = ChooseLobe(material, here, surface, base, path.throughput, roulette,
-                                         draw(kLobeDimension).u);
     for (int i = 0; i < 3; ++i) {
       spawned.reflected.throughput[i] = spawned.reflected.throughput[i] * lobes.reflect;
       spawned.refracted.throughput[i] = spawned.refracted.throughput[i] * lobes.refract;
     }
     if (lobes.diffuse > 0) {
-      Path<Real> diffuse = ScatterDiffuse(here, surface, base, path.throughput, lobes.diffuse,
-                                          draw(kDiffuseDimension));
+      const auto point = DrawSample<Real>(key.seed, key.index, kDiffuseDimension);
+      Path<Real> diffuse =
+          ScatterDiffuse(here, surface, base, path.throughput, lobes.diffuse, point);
       append(ChildKind::kDiffuse, diffuse);
     }
   }
@@ -204,8 +232,10 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
       }
       const SampleKey key{path.seed, index};
       const ShadedPoint<Real> at{material, here, base, surface};
-      Accumulate(sum, path.throughput, LocalLight(frame, at, key, tally));
-      SendOn(frame, path, key, depth, at, scratch.children);
+      const Lobes<Real> lobes = ChooseRays(frame, path, key, depth, at);
+      const Real weight = EmissionWeight(frame, path, hit, at);
+      Accumulate(sum, path.throughput, LocalLight(frame, at, key, tally, weight));
+      SendOn(frame, path, key, lobes, at, scratch.children);
     }
     const std::size_t spawned =
         scratch.children[0].size() + scratch.children[1].size() + scratch.children[2].size();

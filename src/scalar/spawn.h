@@ -51,6 +51,7 @@ struct Path {
   Real throughput[3];
   Real width = 0;          // of the ray's cone where it starts
   std::uint32_t seed = 0;  // of its random numbers
+  Real density = 0;        // with which a diffuse ray was drawn, by solid angle; 0: another
 
   // Whether it is traced: not where all it could add is weighed by `min_throughput` or less (Hall
   // and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). By default 0: what adds

@@ -33,6 +33,7 @@ struct Surface {
   // are multiplied with besides.
   Vec3<Real> facet = {0, 0, 0};
   Real gloss = 1;
+  Real scatter = 0;  // how likely a diffuse ray is followed, of paths
 
   bool inside() const { return (source & kInsideBit) != 0; }
   std::uint32_t primitive() const { return source & ~kInsideBit; }
