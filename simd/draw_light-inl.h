@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "simd/frame-inl.h"
+#include "simd/roundoffs.h"
 #include "simd/sample_terms.h"
 #include "simd/shading.h"
 #include "simd/streams.h"
@@ -137,15 +138,17 @@ HWY_INLINE hn::Mask<D> LookAtEmitters(D d, const EmitterView<Real>& emitters,
   lx = hn::Sub(ex, hn::LoadU(d, surfaces.position_x + i));
   ly = hn::Sub(ey, hn::LoadU(d, surfaces.position_y + i));
   lz = hn::Sub(ez, hn::LoadU(d, surfaces.position_z + i));
+  const V nx = GatherAt(d, emitters.normal[0], at);
+  const V ny = GatherAt(d, emitters.normal[1], at);
+  const V nz = GatherAt(d, emitters.normal[2], at);
+  const V error = hn::Mul(hn::Set(d, kLightRoundoffs<Real>), AbsDot(d, nx, ny, nz, lx, ly, lz));
+  const V away = hn::Add(GatherAt(d, emitters.offset, at), error);
   const V squared = Dot(d, lx, ly, lz, lx, ly, lz), distance = hn::Sqrt(squared);
   lx = hn::Div(lx, distance);
   ly = hn::Div(ly, distance);
   lz = hn::Div(lz, distance);
-  const V nx = GatherAt(d, emitters.normal[0], at);
-  const V ny = GatherAt(d, emitters.normal[1], at);
-  const V nz = GatherAt(d, emitters.normal[2], at);
   const V cosine = Dot(d, lx, ly, lz, nx, ny, nz), size = hn::Abs(cosine);
-  const V offset = hn::CopySign(GatherAt(d, emitters.offset, at), cosine);
+  const V offset = hn::CopySign(away, cosine);
   ex = hn::Sub(ex, hn::Mul(nx, offset));
   ey = hn::Sub(ey, hn::Mul(ny, offset));
   ez = hn::Sub(ez, hn::Mul(nz, offset));

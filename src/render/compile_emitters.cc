@@ -14,8 +14,8 @@ namespace {
 // Numbers of emitters are kept as floats, which hold these exactly.
 constexpr std::size_t kMostEmitters = 1 << 24;
 
-// The end of a shadow ray lies this many roundoffs of the corners above the lamp: more than
-// rounding carries the point that was drawn, or the ray's plane test.
+// The end of a shadow ray lies this many roundoffs of the corners above the lamp, and more by its
+// length: more than rounding carries the point that was drawn.
 constexpr double kEndRoundoffs = 64;
 
 template <typename Real>

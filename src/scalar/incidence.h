@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simd/roundoffs.h"
 #include "simd/shading.h"
 #include "src/scalar/draw_sample.h"
 #include "src/scalar/emitters.h"
@@ -137,7 +138,9 @@ Falling<Real> LookAtEmitters(const EmitterView<Real>& emitters, const Surface<Re
   incidence.l = incidence.to_light / std::sqrt(squared);
   const Vec3<Real> normal = at(emitters.normal);
   const Real cosine = Dot(incidence.l, normal);
-  incidence.end = drawn - normal * std::copysign(emitters.offset[i], cosine);
+  // The ray ends before the triangle, as one from a light ends above a surface.
+  const Real away = emitters.offset[i] + kLightRoundoffs<Real> * AbsDot(normal, incidence.to_light);
+  incidence.end = drawn - normal * std::copysign(away, cosine);
   incidence.colour = at(emitters.rgb);
   const Real size = std::abs(cosine);
   return {squared / size, IsNormalSquare(squared) && size > 0, emitters.density[i]};
