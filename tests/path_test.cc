@@ -172,6 +172,23 @@ TEST_CASE("a pixel under a lamp has little noise, whatever the lamp's size") {
   }
 }
 
+// Straight through, and no light is counted twice: that which is drawn stops at the pane.
+TEST_CASE("a pane of glass before a lamp changes nothing where it does not bend light") {
+  Scene scene = UnderLamp(5, 5);
+  Material pane;
+  pane.transmit = Colour(1.0);
+  scene.materials.push_back(pane);
+  scene.objects.push_back(
+      {"pane", Quad{{Vec3d(-8, 1.5, -8), Vec3d(8, 1.5, -8), Vec3d(8, 1.5, 8), Vec3d(-8, 1.5, 8)}},
+       2});
+  scene.settings.max_depth = 3;
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.samples = 256;
+  const double mean = MeanOf(RenderOrFail(scene, scene.cameras[0], options));
+  CHECK(mean == doctest::Approx(LightUnderLamp(5, 5)).epsilon(2e-3));
+}
+
 TEST_CASE("lamps of all colours and powers are drawn as often as they are bright") {
   Scene scene = UnderLamp(1, 1);
   Material red = scene.materials[1], off = scene.materials[0];

@@ -45,25 +45,15 @@ void LightShader<Real>::ShadeOne(const LightData<Real>& light, const MaterialDat
   if (facing == 0) return;
   const std::uint32_t lit = light.casts_shadows ? FindShadows(light, surfaces, count) : facing;
   if (lit == 0) return;
-  const bool has_shares = frame_.passes_light && light.casts_shadows;
-  ColourView<Real> shares = has_shares ? shares_.view() : ColourView<Real>{};
-  if (light.shape == LightShape::kEmitters) shares = SharesOfEmitters(count);
+  ColourView<Real> shares{};
+  if (light.shape == LightShape::kEmitters) {
+    shares = {incidence_.view().r, incidence_.view().g, incidence_.view().b};
+  } else if (frame_.passes_light && light.casts_shadows) {
+    shares = shares_.view();
+  }
   kernels_.shade_light(light, material, surfaces, incidence_.view(), lit_.data(), shares, count,
                        colours);
   clock_.Charge(Phase::kShade, lit, count);
-}
-
-template <typename Real>
-ColourView<Real> LightShader<Real>::SharesOfEmitters(std::uint32_t count) {
-  const IncidenceView<Real> incidence = incidence_.view();
-  if (!frame_.passes_light) return {incidence.r, incidence.g, incidence.b};
-  const ColourOutput<Real> shares = shares_.output();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    shares.r[i] = shares.r[i] * incidence.r[i];
-    shares.g[i] = shares.g[i] * incidence.g[i];
-    shares.b[i] = shares.b[i] * incidence.b[i];
-  }
-  return shares_.view();
 }
 
 template <typename Real>
@@ -81,7 +71,10 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
   kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
                           occluded_.data());
-  if (frame_.passes_light) return FindShares(light, size, count);
+  // Rays find lamps behind glass themselves.
+  if (frame_.passes_light && light.shape != LightShape::kEmitters) {
+    return FindShares(light, size, count);
+  }
   std::uint32_t lit = size;
   for (std::uint32_t i = 0; i < size; ++i) lit -= occluded_[i];
   if (size == count) {  // ray i is that of surface i

@@ -53,9 +53,6 @@ class LightShader {
   // The same where surfaces let light pass, from what FindShadows left by ray.
   std::uint32_t FindShares(const LightData<Real>& light, std::uint32_t rays, std::uint32_t count);
 
-  // The colours of emitters' light, as much of it as arrives.
-  ColourView<Real> SharesOfEmitters(std::uint32_t count);
-
   const FrameView<Real>& frame_;
   const Kernels<Real>& kernels_;
   SampleSource<Real>& samples_;

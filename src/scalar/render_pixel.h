@@ -60,10 +60,16 @@ Vec3<Real> LightFrom(const FrameView<Real>& frame, const LightData<Real>& light,
   Vec3<Real> share = {1, 1, 1};
   if (light.casts_shadows) {
     ++tally.shadow;
-    share = LightShare(frame, ShadowRay(light, at.surface, incidence));
+    const Ray<Real> ray = ShadowRay(light, at.surface, incidence);
+    // Rays find lamps behind glass themselves.
+    if (light.shape == LightShape::kEmitters) {
+      if (TraceOccluded(frame.tree, ray)) return {0, 0, 0};
+      share = incidence.colour;
+    } else {
+      share = LightShare(frame, ray);
+    }
     if (!IsLight(share)) return {0, 0, 0};
   }
-  if (light.shape == LightShape::kEmitters) share = MultiplyColours(share, incidence.colour);
   return MultiplyColours(LitBy(light, at.here, at.surface, at.base, incidence), share);
 }
 
