@@ -34,8 +34,9 @@ install_and_move() { # BUILD KIND
   local headers others
   headers=$(find "$prefix/include/sheaf" -maxdepth 1 -name '*.h' | wc -l)
   others=$(find "$prefix" \( -name '*.h' -o -name '*.hpp' -o -path '*/include/*' \) -type f | wc -l)
-  [[ $headers -gt 0 && $headers -le 10 && $headers -eq $others ]] ||
-    fail "$headers headers in include/sheaf (at most 10), $others in all"
+  # Ten of C++, and that of C.
+  [[ $headers -gt 0 && $headers -le 11 && $headers -eq $others ]] ||
+    fail "$headers headers in include/sheaf (at most 11), $others in all"
   mv "$prefix" "$moved"
 }
 one_target=-DHWY_DISABLED_TARGETS=HWY_AVX3_DL+HWY_AVX3+HWY_AVX2+HWY_SSE4
@@ -68,6 +69,12 @@ while read -r name; do
 done < <(names_in "$(find "$static" -name libsheaf.a)")
 [[ $count -gt 3 ]] || fail "no public names were found"
 echo "libsheaf.so: $count public names"
+# Likewise of C: the names of its header, and no more.
+sed 's|//.*||' "$shared/include/sheaf/capi.h" | tr '\n' ' ' | grep -oE 'SHEAF_API [^(;]*\(' | grep -oE 'sheaf_[a-z_]+\(' |
+  tr -d '(' | sort >"$work/names"
+nm -D --defined-only "$library" | sed -nE 's/.* T (sheaf_[a-z_]+)$/\1/p' | sort | diff "$work/names" - ||
+  fail "<sheaf/capi.h> and libsheaf.so differ in names"
+echo "libsheaf.so: $(wc -l <"$work/names") names of C"
 
 for kind in static shared; do
   program=$work/find_package-$kind
@@ -84,6 +91,9 @@ for kind in static shared; do
   # shellcheck disable=SC2086
   quietly "${CXX:-c++}" -std=c++20 -I "$consumers" "$consumers/program.cc" -o "$work/program-$kind" $flags
   echo "pkg-config, $kind: $(LD_LIBRARY_PATH=$folder/.. "$work/program-$kind")"
+  # shellcheck disable=SC2086
+  quietly "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Werror "$root/docs/trace_rays.c" -o "$work/c-program-$kind" $flags
+  echo "C by pkg-config, $kind: $(LD_LIBRARY_PATH=$folder/.. "$work/c-program-$kind")"
 done
 
 rm -rf "$work/plugin"

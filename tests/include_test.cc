@@ -1,7 +1,8 @@
 // Includes point downward: app -> lab -> render -> {scalar, bvh, formats} -> stream -> scene ->
 // core
-// -> simd's plain headers, and kernels include only simd/. The public face, src/sheaf, lies below
-// all and includes itself alone, as <sheaf/...>. A header carries the guard of its path.
+// -> simd's plain headers, capi -> render, and kernels include only simd/. The public face,
+// src/sheaf, lies below all and includes itself alone, as <sheaf/...>. A header carries the guard
+// of its path.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -79,7 +80,7 @@ const std::map<std::string, std::set<std::string>>& Below() {
       {"src/sheaf", {}},       {"src/core", {}},        {"src/scene", kCore},
       {"src/stream", kScene},  {"src/bvh", kBvh},       {"src/scalar", kStream},
       {"src/formats", kScene}, {"src/render", kMiddle}, {"src/lab", kRender},
-      {"src/app", kLab}};
+      {"src/capi", kRender},   {"src/python", {}},      {"src/app", kLab}};
   return kBelow;
 }
 

@@ -9,6 +9,7 @@ packages=(
   libhwy-dev libglm-dev libtbb-dev libbenchmark-dev doctest-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libpng-dev pkg-config
   libtinygltf-dev libturbojpeg0-dev libopenexr-dev libassimp-dev assimp-testmodels
+  python3-dev python3-numpy pybind11-dev
   "$@"
 )
 

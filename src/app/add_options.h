@@ -11,7 +11,7 @@
 
 #include "src/app/choose.h"
 
-// Only add_options.cc and main.cc include CLI11, which takes seconds to compile.
+// Few files include CLI11, which takes seconds to compile.
 namespace CLI {
 class App;
 }

@@ -6,6 +6,7 @@
 #include "src/app/convert_command.h"
 #include "src/app/diff_command.h"
 #include "src/app/info_command.h"
+#include "src/app/manual_command.h"
 #include "src/app/merge_command.h"
 #include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
@@ -41,6 +42,10 @@ constexpr CommandEntry kCommands[] = {
     {"stress", "Run the stress cases of the numerics", "  sheaf stress\n", &StressCommand},
     {"info", "Show this build and its SIMD targets, or a scene", "  sheaf info scene.json\n",
      &InfoCommand},
+    {"completion", "Print the completion of this command for a shell",
+     "  sheaf completion bash > ~/.local/share/bash-completion/completions/sheaf\n",
+     &CompletionCommand},
+    {"man", "Print a man page", "  sheaf man render | man -l -\n", &ManCommand},
 };
 
 }  // namespace

@@ -19,7 +19,6 @@
 #include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
 #include "src/formats/write_scene_json.h"
-#include "src/scene/srgb.h"
 #include "src/scene/textures.h"
 
 namespace sheaf {
@@ -160,16 +159,6 @@ Status ConvertScene(const ConvertRequest& request) {
 }
 
 // ---- Pictures ----
-
-// Display values become light, where the file says how they are encoded.
-void DecodeLight(ReadPictureResult& picture) {
-  if (picture.is_display && picture.is_srgb) {
-    for (float& value : picture.film.rgb) {
-      value = static_cast<float>(SrgbDecode(static_cast<double>(value)));
-    }
-  }
-  picture.is_display = false;
-}
 
 Status ConvertPicture(const ConvertRequest& request) {
   if (const auto option = GivenSceneOption(request.options)) {

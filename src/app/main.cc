@@ -8,17 +8,14 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "sheaf/render.h"
-#include "sheaf/version.h"
-#include "src/app/commands.h"
+#include "src/app/command_line.h"
 #include "src/app/exit_code.h"
 #include "src/app/print_message.h"
 #include "src/app/standard_output.h"
@@ -27,26 +24,6 @@
 
 namespace sheaf {
 namespace {
-
-constexpr char kExitCodes[] = R"(
-Exit codes: 0 all went well, 1 differences or slower, 2 usage, 3 bad scene, 4 input or output,
-5 no verdict, 130 interrupted, 143 terminated.)";
-
-std::string Footer() {
-  std::string text = "\nExamples:\n";
-  for (const CommandEntry& entry : Commands()) text += entry.examples;
-  return text + kExitCodes;
-}
-
-// CLI11 writes "--json{-}" for a flag that takes a value: "-" is the value of the flag alone. The
-// help shows the name without it.
-class HelpFormatter : public CLI::Formatter {
- public:
-  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
-    const std::string name = CLI::Formatter::make_option_name(option, is_positional);
-    return name.substr(0, name.find('{'));
-  }
-};
 
 // A caller may start the command with standard output closed. The next file that is opened would
 // then get its descriptor, and text for standard output would end in that file. So each closed
@@ -159,17 +136,8 @@ ExitCode Main(int argc, char** argv) {
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             kMaxThreads);
 
-  CLI::App app("Sheaf, a SIMD packet ray tracer for CPUs", "sheaf");
-  app.set_version_flag("--version", fmt::format("sheaf {}", kVersion));
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(Footer());
-  app.require_subcommand(1);
-  std::vector<std::pair<const CLI::App*, Command>> commands;
-  for (const CommandEntry& entry : Commands()) {
-    CLI::App* const subcommand = app.add_subcommand(entry.name, entry.help);
-    commands.emplace_back(subcommand, entry.make());
-    commands.back().second.add_options(*subcommand);
-  }
+  CommandLine line;
+  CLI::App& app = *line.app;
   if (argc < 2) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::kUsage;
@@ -177,7 +145,7 @@ ExitCode Main(int argc, char** argv) {
   if (const auto word = FindEmptyValue(argc, argv)) {
     return Report({ErrorKind::kUsage, fmt::format("{}: nothing follows the =", Printable(*word))});
   }
-  for (const auto& [subcommand, command] : commands) {
+  for (const auto& [subcommand, command] : line.commands) {
     if (subcommand->get_name() != argv[1]) continue;
     if (const auto missing = FindMissingValue(*subcommand, argc, argv)) {
       return Report({ErrorKind::kUsage,
@@ -189,7 +157,7 @@ ExitCode Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return ReportParse(app, error);
   }
-  for (const auto& [subcommand, command] : commands) {
+  for (const auto& [subcommand, command] : line.commands) {
     if (subcommand->parsed()) return ToExitCode(command.run());
   }
   return ExitCode::kInternal;

@@ -8,6 +8,7 @@
 #include "src/formats/format_table.h"
 #include "src/formats/printable.h"
 #include "src/scene/develop.h"
+#include "src/scene/srgb.h"
 
 namespace sheaf {
 namespace {
@@ -109,6 +110,15 @@ Status WritePicture(const Film& film, const PictureSpec& spec, const std::string
 Result<ReadPictureResult> ReadPicture(const std::string& path) {
   const FormatRow* row = PictureFormat(path);
   return row == nullptr ? UnknownFormat(path) : row->read_picture(path);
+}
+
+void DecodeLight(ReadPictureResult& picture) {
+  if (picture.is_display && picture.is_srgb) {
+    for (float& value : picture.film.rgb) {
+      value = static_cast<float>(SrgbDecode(static_cast<double>(value)));
+    }
+  }
+  picture.is_display = false;
 }
 
 }  // namespace sheaf

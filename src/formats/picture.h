@@ -14,6 +14,9 @@ bool HoldsFloats(const std::string& path);
 // Whether it holds layers beside the colours.
 bool HoldsLayers(const std::string& path);
 
+// Display values become light, where the file says how they are encoded.
+void DecodeLight(ReadPictureResult& picture);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_FORMATS_PICTURE_H_

@@ -1,4 +1,4 @@
-// The version of these headers, and the mark of what the library exports.
+// The version of these headers, and the mark of what the library exports. C reads it too.
 #ifndef SHEAF_SHEAF_VERSION_H_
 #define SHEAF_SHEAF_VERSION_H_
 
@@ -21,6 +21,8 @@
 #define SHEAF_API
 #endif
 
+#ifdef __cplusplus
+
 namespace sheaf {
 
 inline constexpr char kVersion[] = SHEAF_VERSION_STRING;
@@ -30,5 +32,7 @@ inline constexpr char kVersion[] = SHEAF_VERSION_STRING;
 SHEAF_API const char* LibraryVersion();
 
 }  // namespace sheaf
+
+#endif  // __cplusplus
 
 #endif  // SHEAF_SHEAF_VERSION_H_

@@ -1,0 +1,17 @@
+# Writes the man pages and completions of the command SHEAF into the folder TO.
+#
+#   cmake -DSHEAF=build/release/sheaf -DTO=build/release/manual -P src/app/write_manual.cmake
+file(MAKE_DIRECTORY ${TO})
+function(write name)
+  execute_process(COMMAND ${SHEAF} ${ARGN} OUTPUT_FILE ${TO}/${name} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+write(sheaf.1 man)
+write(sheaf.bash completion bash)
+write(_sheaf completion zsh)
+# The page of all names each command.
+file(STRINGS ${TO}/sheaf.1 names REGEX "^\\.BR sheaf..-[a-z]+ \\(1\\)$")
+list(TRANSFORM names REPLACE "^\\.BR sheaf..-([a-z]+) .*" "\\1")
+list(REMOVE_DUPLICATES names)
+foreach(name IN LISTS names)
+  write(sheaf-${name}.1 man ${name})
+endforeach()

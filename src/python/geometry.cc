@@ -1,0 +1,280 @@
+// Geometries, rays and hits, on the arrays of NumPy as they lie in memory.
+#include "sheaf/geometry.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sheaf/target.h"
+#include "src/python/bindings.h"
+#include "src/python/errors.h"
+
+namespace sheaf::python {
+namespace {
+
+namespace py = pybind11;
+using Ids = py::array_t<std::uint32_t>;
+
+// Rays in arrays of shape (N, 3), which are kept alive.
+template <typename Real>
+struct Rays {
+  py::array_t<Real> origins, directions;
+  std::optional<Ids> source;  // as far apart as the rays
+  RayArraysOf<Real> arrays;
+  std::size_t count = 0;
+
+  Rays(py::array_t<Real> from, py::array_t<Real> towards, std::optional<Ids> started)
+      : origins(std::move(from)), directions(std::move(towards)), source(std::move(started)) {
+    const auto is_table = [](const py::array& array) {
+      return array.ndim() == 2 && array.shape(1) == 3;
+    };
+    if (!is_table(origins) || !is_table(directions) || origins.shape(0) != directions.shape(0) ||
+        (source && source->size() != origins.shape(0))) {
+      throw py::value_error("rays: arrays of another shape");
+    }
+    count = static_cast<std::size_t>(origins.shape(0));
+    // NumPy gives arrays without elements any strides.
+    const py::ssize_t row = count == 0 ? py::ssize_t{sizeof(Real)} : origins.strides(0);
+    if (count > 0 &&
+        (row <= 0 || directions.strides(0) != row || (source && source->strides(0) != row))) {
+      throw py::value_error("rays: rows of another distance");
+    }
+    const auto column = [](const py::array_t<Real>& of, py::ssize_t i) {
+      return reinterpret_cast<const Real*>(reinterpret_cast<const char*>(of.data()) +
+                                           i * of.strides(1));
+    };
+    arrays = {column(origins, 0),    column(origins, 1),    column(origins, 2),
+              column(directions, 0), column(directions, 1), column(directions, 2)};
+    if (source) arrays.source = source->data();
+    arrays.stride = row == sizeof(Real) ? 0 : static_cast<std::size_t>(row);
+  }
+};
+
+// Without gaps, one a ray.
+template <typename Real>
+using Values = std::optional<py::array_t<Real, py::array::c_style>>;
+
+template <typename Real>
+struct Options {
+  TraceOptionsOf<Real> options;
+  Values<Real> t_min, t_max;
+
+  // Of t_min and t_max, arrays or one number for all; none: every hit in front.
+  Options(Values<Real> min, Values<Real> max, int coherence, const std::string& target)
+      : t_min(std::move(min)), t_max(std::move(max)) {
+    TraceIntervalOf<Real>& interval = options.interval;
+    if (t_min && t_min->ndim() == 0) interval.all_t_min = *t_min->data();
+    if (t_min && t_min->ndim() == 1) interval.t_min = t_min->data();
+    if (t_max && t_max->ndim() == 0) interval.all_t_max = *t_max->data();
+    if (t_max && t_max->ndim() == 1) interval.t_max = t_max->data();
+    options.coherence = static_cast<RayCoherence>(coherence);
+    const std::optional<Target> named = Target::Named(target);
+    if (!named) Raise(SHEAF_USAGE, "target: this processor has no \"" + target + "\"");
+    options.target = *named;
+  }
+
+  void CheckFits(const Rays<Real>& rays) const {
+    for (const Values<Real>* values : {&t_min, &t_max}) {
+      if (*values && (*values)->ndim() == 1 &&
+          static_cast<std::size_t>((*values)->size()) != rays.count) {
+        throw py::value_error("t_min, t_max: arrays of another length");
+      }
+    }
+  }
+};
+
+template <typename Real>
+struct Hits {
+  py::array_t<Real> t, u, v;
+  Ids primitive, object;
+
+  explicit Hits(std::size_t count)
+      : t(count), u(count), v(count), primitive(count), object(count) {}
+  HitArraysOf<Real> arrays() {
+    return {t.mutable_data(), primitive.mutable_data(), object.mutable_data(), u.mutable_data(),
+            v.mutable_data()};
+  }
+};
+
+// An object as the Python side gives it: its kind and its arrays without gaps.
+template <typename Real>
+void AddObject(const py::tuple& object, GeometryInput* input, std::vector<py::array>* kept) {
+  const auto numbers = [&](std::size_t i) {
+    const auto array = object[i].cast<py::array_t<Real, py::array::c_style>>();
+    kept->push_back(array);
+    return std::span<const Real>(array.data(), static_cast<std::size_t>(array.size()));
+  };
+  const auto kind = object[0].cast<std::string>();
+  if (kind == "spheres") {
+    input->AddSpheres(numbers(1));
+  } else if (kind == "disks") {
+    input->AddDisks(numbers(1));
+  } else {
+    const auto ids = object[2].cast<py::array_t<std::uint32_t, py::array::c_style>>();
+    kept->push_back(ids);
+    const std::span<const std::uint32_t> indices(ids.data(), static_cast<std::size_t>(ids.size()));
+    const auto vertices = numbers(1);
+    if (object[3].is_none()) {
+      input->AddTriangles(vertices, indices);
+    } else {
+      input->AddTriangles(vertices, indices, numbers(3));
+    }
+  }
+}
+
+template <typename Real>
+GeometryOf<Real> Build(const py::list& objects, int threads, const std::string& not_finite) {
+  GeometryInput input;
+  std::vector<py::array> kept;
+  for (const py::handle object : objects) {
+    AddObject<Real>(object.cast<py::tuple>(), &input, &kept);
+  }
+  const BuildOptions options = {
+      .threads = threads,
+      .not_finite = not_finite == "skip" ? NotFinite::kSkipped : NotFinite::kRefused};
+  Result<GeometryOf<Real>> built = [&] {
+    const py::gil_scoped_release release;
+    return GeometryOf<Real>::Build(input, options);
+  }();
+  if (!built) Check(built.error());
+  return std::move(built).value();
+}
+
+template <typename Real>
+py::dict StatisticsOf(const GeometryOf<Real>& geometry) {
+  const GeometryStatistics from = geometry.statistics();
+  py::dict to;
+  to["objects"] = geometry.object_count();
+  to["primitives"] = from.primitives;
+  to["triangles"] = from.triangles;
+  to["spheres"] = from.spheres;
+  to["disks"] = from.disks;
+  to["never_hit"] = from.never_hit;
+  to["skipped"] = from.skipped;
+  to["nodes"] = from.nodes;
+  to["leaves"] = from.leaves;
+  to["depth"] = from.depth;
+  to["bytes"] = from.bytes;
+  return to;
+}
+
+template <typename Real>
+py::tuple Closest(const GeometryOf<Real>& geometry, const Rays<Real>& rays,
+                  const Options<Real>& options) {
+  options.CheckFits(rays);
+  Hits<Real> hits(rays.count);
+  const HitArraysOf<Real> arrays = hits.arrays();
+  const Status traced = [&] {
+    const py::gil_scoped_release release;
+    return TraceClosest(geometry, rays.arrays, rays.count, arrays, options.options);
+  }();
+  Check(traced);
+  return py::make_tuple(hits.t, hits.primitive, hits.object, hits.u, hits.v);
+}
+
+template <typename Real>
+Ids Occluded(const GeometryOf<Real>& geometry, const Rays<Real>& rays,
+             const Options<Real>& options) {
+  options.CheckFits(rays);
+  Ids occluded(static_cast<py::ssize_t>(rays.count));
+  std::uint32_t* const into = occluded.mutable_data();
+  const Status traced = [&] {
+    const py::gil_scoped_release release;
+    return TraceOccluded(geometry, rays.arrays, rays.count, into, options.options);
+  }();
+  Check(traced);
+  return occluded;
+}
+
+// x, y and z apart in memory, as the library writes them; of shape (N, 3) to Python.
+template <typename Real>
+py::array_t<Real> Columns(std::size_t count, std::array<Real*, 3>* into) {
+  const auto rows = static_cast<py::ssize_t>(count);
+  const py::ssize_t size = sizeof(Real);
+  py::array_t<Real> array(std::vector<py::ssize_t>{rows, 3},
+                          std::vector<py::ssize_t>{size, size * rows});
+  for (std::size_t k = 0; k < 3; ++k) (*into)[k] = array.mutable_data() + k * count;
+  return array;
+}
+
+template <typename Real>
+py::dict Points(const GeometryOf<Real>& geometry, const Rays<Real>& rays, const py::tuple& found,
+                const std::string& target) {
+  const auto t = found[0].cast<py::array_t<Real, py::array::c_style>>();
+  const auto primitive = found[1].cast<py::array_t<std::uint32_t, py::array::c_style>>();
+  const auto u = found[2].cast<py::array_t<Real, py::array::c_style>>();
+  const auto v = found[3].cast<py::array_t<Real, py::array::c_style>>();
+  for (const py::array& array : {py::array(t), py::array(primitive), py::array(u), py::array(v)}) {
+    if (static_cast<std::size_t>(array.size()) != rays.count) {
+      throw py::value_error("hits: arrays of another length");
+    }
+  }
+  HitArraysOf<Real> hits;  // read alone
+  hits.t = const_cast<Real*>(t.data());
+  hits.primitive = const_cast<std::uint32_t*>(primitive.data());
+  hits.u = const_cast<Real*>(u.data());
+  hits.v = const_cast<Real*>(v.data());
+  HitPointArraysOf<Real> points;
+  py::dict made;
+  made["point"] = Columns(rays.count, &points.position);
+  made["face_normal"] = Columns(rays.count, &points.face);
+  made["normal"] = Columns(rays.count, &points.normal);
+  made["front"] = Columns(rays.count, &points.front);
+  made["back"] = Columns(rays.count, &points.back);
+  const auto ids = [&](const char* name) {
+    Ids array(static_cast<py::ssize_t>(rays.count));
+    made[name] = array;
+    return array.mutable_data();
+  };
+  points.front_source = ids("front_source");
+  points.back_source = ids("back_source");
+  points.side = ids("side");
+  const Options<Real> options({}, {}, 0, target);
+  const Status status = [&] {
+    const py::gil_scoped_release release;
+    return FindHitPoints(geometry, rays.arrays, hits, rays.count, points, options.options.target);
+  }();
+  Check(status);
+  return made;
+}
+
+template <typename Real>
+void AddGeometryOf(py::module_& module, const std::string& number) {
+  using Geometry = GeometryOf<Real>;
+  py::class_<Rays<Real>>(module, ("Rays" + number).c_str())
+      .def(py::init<py::array_t<Real>, py::array_t<Real>, std::optional<Ids>>());
+  py::class_<Options<Real>>(module, ("Options" + number).c_str())
+      .def(py::init<Values<Real>, Values<Real>, int, const std::string&>());
+  py::class_<Geometry>(module, ("Geometry" + number).c_str())
+      .def(py::init(&Build<Real>))
+      .def("statistics", &StatisticsOf<Real>)
+      .def("bounds", [](const Geometry& g) { return py::make_tuple(g.lower(), g.upper()); })
+      .def("first_primitives",
+           [](const Geometry& geometry) {
+             std::vector<std::uint32_t> first;
+             for (std::uint32_t i = 0; i <= geometry.object_count(); ++i) {
+               first.push_back(geometry.first_primitive(i));
+             }
+             return py::array_t<std::uint32_t>(static_cast<py::ssize_t>(first.size()),
+                                               first.data());
+           })
+      .def("closest", &Closest<Real>)
+      .def("occluded", &Occluded<Real>)
+      .def("points", &Points<Real>);
+}
+
+}  // namespace
+
+void AddGeometry(py::module_& module) {
+  AddGeometryOf<float>(module, "Float");
+  AddGeometryOf<double>(module, "Double");
+}
+
+}  // namespace sheaf::python
