@@ -1,7 +1,7 @@
-// Includes point downward: app -> view -> lab -> render -> {scalar, bvh, formats} -> stream -> scene ->
-// core
-// -> simd's plain headers, and kernels include only simd/. The public face, src/sheaf, lies below
-// all and includes itself alone, as <sheaf/...>. A header carries the guard of its path.
+// Includes point downward: app -> view -> lab -> render -> {scalar, bvh, formats} -> stream ->
+// scene -> core -> simd's plain headers, and kernels include only simd/. The public face,
+// src/sheaf, lies below all and includes itself alone, as <sheaf/...>. A header carries the guard
+// of its path.
 #include <doctest/doctest.h>
 
 #include <algorithm>
