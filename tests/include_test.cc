@@ -1,8 +1,7 @@
-// Includes point downward: app -> lab -> render -> {scalar, bvh, formats} -> stream -> scene ->
-// core
-// -> simd's plain headers, capi -> render, and kernels include only simd/. The public face,
-// src/sheaf, lies below all and includes itself alone, as <sheaf/...>. A header carries the guard
-// of its path.
+// Includes point downward: app -> view -> lab -> render -> {scalar, bvh, formats} -> stream ->
+// scene -> core -> simd's plain headers, capi -> render, and kernels include only simd/. The public
+// face, src/sheaf, lies below all and includes itself alone, as <sheaf/...>. A header carries the
+// guard of its path.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -76,11 +75,17 @@ const std::map<std::string, std::set<std::string>>& Below() {
     layers.insert("src/lab");
     return layers;
   }();
+  static const std::set<std::string> kView = [] {
+    std::set<std::string> layers = kLab;
+    layers.insert("src/view");
+    return layers;
+  }();
   static const std::map<std::string, std::set<std::string>> kBelow = {
       {"src/sheaf", {}},       {"src/core", {}},        {"src/scene", kCore},
       {"src/stream", kScene},  {"src/bvh", kBvh},       {"src/scalar", kStream},
       {"src/formats", kScene}, {"src/render", kMiddle}, {"src/lab", kRender},
-      {"src/capi", kRender},   {"src/python", {}},      {"src/app", kLab}};
+      {"src/capi", kRender},   {"src/python", {}},      {"src/view", kLab},
+      {"src/app", kView}};
   return kBelow;
 }
 

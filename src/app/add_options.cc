@@ -133,6 +133,8 @@ void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
       ->excludes("--camera");
 }
 
+void AddFooter(CLI::App& app, const std::string& text) { app.footer(text); }
+
 std::string GivenText(const CLI::App& app, const std::set<std::string>& except) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {

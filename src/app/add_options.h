@@ -93,6 +93,9 @@ void AddJson(CLI::App& app, std::string& destination, const char* description);
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);
 
+// What the help of the subcommand ends with.
+void AddFooter(CLI::App& app, const std::string& text);
+
 // The options and inputs that the parsed command line has, with their values, but for those that
 // are named: a text that differs where the work does.
 std::string GivenText(const CLI::App& app, const std::set<std::string>& except);

@@ -11,6 +11,7 @@
 #include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
 #include "src/app/stress_command.h"
+#include "src/app/view_command.h"
 
 namespace sheaf {
 namespace {
@@ -23,6 +24,8 @@ constexpr CommandEntry kCommands[] = {
      "  sheaf render model.glb -o model.exr --aov depth,normal\n"
      "  sheaf render scene.json --tile 2/8 -o part2.png\n",
      &RenderCommand},
+    {"view", "Show a scene in a window, to move about in it", "  sheaf view scene.json\n",
+     &ViewCommand},
     {"merge", "Join what --tile I/N or --crop rendered into the whole picture",
      "  sheaf merge part1.png part2.png ... -o whole.png\n", &MergeCommand},
     {"convert", "Turn a scene or model into scene JSON, or a picture into another format",

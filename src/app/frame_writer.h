@@ -13,8 +13,8 @@
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "src/app/choose_look.h"
-#include "src/app/layer_picture.h"
 #include "src/formats/picture.h"
+#include "src/view/show_layer.h"
 
 namespace sheaf {
 

@@ -1,4 +1,4 @@
-// Layers of a picture as pictures of their own.
+// Layers of a picture: their names on the command line, and their files.
 #ifndef SHEAF_APP_LAYER_PICTURE_H_
 #define SHEAF_APP_LAYER_PICTURE_H_
 
@@ -6,7 +6,6 @@
 #include <string>
 
 #include "sheaf/film.h"
-#include "sheaf/scene.h"
 
 namespace sheaf {
 
@@ -15,15 +14,6 @@ std::optional<Layers> ParseLayers(const std::string& text);
 
 // "out/front.png" becomes "out/front.depth.png". `path` has an ending that CheckPicturePath knows.
 std::string LayerPath(const std::string& path, Layer layer);
-
-// The rows of a layer as colours. A file of floats holds the numbers, one of bytes what an eye can
-// use: depth from white at the camera to black at `far`, normals from [-1, 1] to [0, 1], objects in
-// colours of their own.
-enum class LayerLook { kNumbers, kDisplay };
-Film ShowLayer(const Film& rows, Layer layer, LayerLook look, double far);
-
-// The largest distance from the camera to what the scene holds.
-double FarthestDepth(const Scene& scene, const Camera& camera);
 
 }  // namespace sheaf
 

@@ -6,12 +6,12 @@
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
 #include "src/app/dark_picture.h"
-#include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/print_message.h"
 #include "src/core/checksum.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
+#include "src/view/heat_picture.h"
 
 namespace sheaf {
 namespace {

@@ -17,10 +17,17 @@ constexpr bool kHasOpenImageIo = true;
 constexpr bool kHasOpenImageIo = false;
 #endif
 
+#ifdef SHEAF_HAS_WINDOW
+constexpr bool kHasWindow = true;
+#else
+constexpr bool kHasWindow = false;
+#endif
+
 constexpr OptionalPart kOptionalParts[] = {
     {"OpenEXR", "reads and writes .exr", kHasOpenExr},
     {"OpenImageIO", "reads textures and environments of BMP, TGA, TIFF, WebP, HDR and EXR",
      kHasOpenImageIo},
+    {"window", "shows scenes in a window, by GLFW, OpenGL and Dear ImGui", kHasWindow},
 };
 
 }  // namespace

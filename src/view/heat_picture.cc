@@ -1,4 +1,4 @@
-#include "src/app/heat_picture.h"
+#include "src/view/heat_picture.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -34,22 +34,28 @@ std::size_t HeatPicture::columns() const {
   return static_cast<std::size_t>((area_.width() + tile_size_ - 1) / tile_size_);
 }
 
-Status HeatPicture::Write(const std::string& path) const {
-  Heat scale = {1, 1, 1};
-  if (!HoldsFloats(path)) {
-    for (const std::size_t i : {0, 2}) scale[i] = 1 / UsualMost(i);
+HeatPicture::Heat HeatPicture::ScaleOf(LayerLook look) const {
+  if (look == LayerLook::kNumbers) return {1, 1, 1};
+  return {1 / UsualMost(0), 1, 1 / UsualMost(2)};
+}
+
+void HeatPicture::FillRow(int y, const Heat& scale, float* rgb) const {
+  const Heat* tiles = &tiles_[static_cast<std::size_t>(y / tile_size_) * columns()];
+  for (int x = 0; x < area_.width(); ++x) {
+    const Heat& heat = tiles[x / tile_size_];
+    for (std::size_t i = 0; i < 3; ++i) *rgb++ = heat[i] * scale[i];
   }
+}
+
+Status HeatPicture::Write(const std::string& path) const {
+  const Heat scale = ScaleOf(HoldsFloats(path) ? LayerLook::kNumbers : LayerLook::kDisplay);
   PictureSpec spec = WholePicture(area_.width(), area_.height(), Transfer::kLinear);
   spec.values = Values::kNumbers;
   Result<PictureWriter> writer = PictureWriter::Create(path, spec);
   if (!writer) return writer.error();
   Film row(area_.width(), 1);
   for (int y = 0; y < area_.height(); ++y) {
-    const Heat* tiles = &tiles_[static_cast<std::size_t>(y / tile_size_) * columns()];
-    for (int x = 0; x < area_.width(); ++x) {
-      const Heat& heat = tiles[x / tile_size_];
-      for (std::size_t i = 0; i < 3; ++i) row.pixel(x, 0)[i] = heat[i] * scale[i];
-    }
+    FillRow(y, scale, row.pixel(0, 0));
     if (const Status written = writer.value().WriteRows(row); !written) return written;
   }
   return writer.value().Finish();

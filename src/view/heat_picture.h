@@ -1,6 +1,6 @@
 // A picture of where a frame's time went, tile by tile.
-#ifndef SHEAF_APP_HEAT_PICTURE_H_
-#define SHEAF_APP_HEAT_PICTURE_H_
+#ifndef SHEAF_VIEW_HEAT_PICTURE_H_
+#define SHEAF_VIEW_HEAT_PICTURE_H_
 
 #include <array>
 #include <string>
@@ -9,6 +9,7 @@
 #include "sheaf/error.h"
 #include "sheaf/film.h"
 #include "sheaf/render.h"
+#include "src/view/show_layer.h"
 
 namespace sheaf {
 
@@ -25,9 +26,13 @@ class HeatPicture {
   // After all rows.
   Status Write(const std::string& path) const;
 
- private:
+  // What the channels are multiplied with: 1, or for a display as said above. After all rows.
   using Heat = std::array<float, 3>;
+  Heat ScaleOf(LayerLook look) const;
+  // Pixel row `y` of the picture, as wide as that: three numbers a pixel.
+  void FillRow(int y, const Heat& scale, float* rgb) const;
 
+ private:
   float UsualMost(std::size_t channel) const;
   std::size_t columns() const;
 
@@ -38,4 +43,4 @@ class HeatPicture {
 
 }  // namespace sheaf
 
-#endif  // SHEAF_APP_HEAT_PICTURE_H_
+#endif  // SHEAF_VIEW_HEAT_PICTURE_H_
