@@ -4,6 +4,7 @@
 
 #include "simd/blend_vertices.h"
 #include "simd/face_light.h"
+#include "simd/filter_noise.h"
 #include "simd/find_footprints.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
@@ -27,7 +28,8 @@
   X(SampleTexture, sample_texture)     \
   X(ShadeAmbient, shade_ambient)       \
   X(FaceLight, face_light)             \
-  X(GenerateShadow, generate_shadow)
+  X(GenerateShadow, generate_shadow)   \
+  X(FilterNoise, filter_noise)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).
 #define SHEAF_FAST_KERNELS(X)      \
   X(TraceClosest, trace_closest)   \

@@ -6,6 +6,7 @@
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
 #include "src/app/dark_picture.h"
+#include "src/app/denoised_rows.h"
 #include "src/app/heat_picture.h"
 #include "src/app/interrupt.h"
 #include "src/app/print_message.h"
@@ -15,10 +16,6 @@
 
 namespace sheaf {
 namespace {
-
-PixelRect AreaOf(const RenderOptions& options) {
-  return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
-}
 
 std::uint64_t PixelCount(const PixelRect& area) {
   return static_cast<std::uint64_t>(area.width()) * static_cast<std::uint64_t>(area.height());
@@ -88,19 +85,27 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   if (!journal) return journal.error();
   HeatPicture heat(options);
   DarkPicture dark(scene.settings.transfer, frame.look.ev);
-  const RowSink write = [&](const Film& rows) {
+  const RowSink finish = [&](const Film& rows) {
     dark.AddRows(rows);
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
     return writer.value().WriteRows(rows);
   };
+  std::optional<DenoisedRows> denoised;
+  if (request.denoise) denoised.emplace(options);
+  const RowSink write = [&](const Film& rows) -> Status {
+    if (!denoised) return finish(rows);
+    denoised->AddRows(rows);
+    return Done{};
+  };
+  const RenderOptions rendered = request.denoise ? DenoisedRows::Widen(options) : options;
   // On disk before anything else may fail.
   const RowSink keep_and_write = [&](const Film& rows) {
     const Status kept = journal.value()->Append(rows);
     return kept ? write(rows) : kept;
   };
-  PixelRect area = AreaOf(options);
+  PixelRect area = AreaOf(rendered);
   if (journal.value()) {
-    const Result<int> rows = Restore(area, options.layers, write, &*journal.value());
+    const Result<int> rows = Restore(area, rendered.layers, write, &*journal.value());
     if (!rows) return rows.error();
     record.resumed_rows = rows.value();
     if (rows.value() > 0 && !request.quiet) {
@@ -111,7 +116,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   }
   if (area.height() > 0) {
     FrameWatch watch(style, label, options, PixelCount(area));
-    RenderOptions rest = options;
+    RenderOptions rest = rendered;
     if (record.resumed_rows > 0) rest.crop = area;
     const Status rendered =
         RenderRows(scene, *frame.camera, rest, journal.value() ? keep_and_write : write,
@@ -125,6 +130,11 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     }
     if (!rendered) return rendered.error();
     watch.Finish(record.stats);
+  }
+  if (denoised) {
+    const Result<Film> film = denoised->Finish();
+    if (!film) return film.error();
+    if (const Status written = finish(film.value()); !written) return written.error();
   }
   if (const Status written = writer.value().Finish(); !written) return written.error();
   // A part of a picture may well be empty.

@@ -47,7 +47,7 @@ struct RenderRequest {
   std::optional<PixelRect> crop;
   LookOptions look;
   Layers layers;  // of --aov
-  bool resume = false;
+  bool denoise = false, resume = false;
   std::string identity;  // the options that a picture's bits depend on, as text
   std::string progress = "auto";
   bool quiet = false, no_floor = false;
