@@ -6,6 +6,7 @@
 #include "simd/face_light.h"
 #include "simd/filter_noise.h"
 #include "simd/find_footprints.h"
+#include "simd/find_medians.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
 #include "simd/report_target.h"
@@ -29,6 +30,7 @@
   X(ShadeAmbient, shade_ambient)       \
   X(FaceLight, face_light)             \
   X(GenerateShadow, generate_shadow)   \
+  X(FindMedians, find_medians)         \
   X(FilterNoise, filter_noise)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).
 #define SHEAF_FAST_KERNELS(X)      \

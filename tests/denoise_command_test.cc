@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "noisy_film.h"
 #include "run_command.h"
 #include "sheaf/formats.h"
+#include "sheaf/render.h"
 #include "src/formats/pfm.h"
 #include "src/lab/picture_metrics.h"
 
@@ -123,7 +125,15 @@ TEST_CASE("errors name the file and the option") {
   CHECK(Contains(complaint({noisy, "--albedo", work / "albedo.pfm", "--target", "no"}, 2),
                  "--target"));
   CHECK(Contains(complaint({noisy, "--albedo", work / "out.pfm"}, 2), "out.pfm"));
-  CHECK(!Contains(work.Run({"info"}).out, "out.pfm"));
+  const nlohmann::json parts = nlohmann::json::parse(work.Run({"info", "--json"}).out)["parts"];
+  if (!parts["OpenImageDenoise"].get<bool>()) {
+    const std::string missing = "oidn: this build has no Open Image Denoise";
+    CHECK(Contains(complaint({noisy, "--albedo", work / "albedo.pfm", "--filter", "oidn"}, 2),
+                   missing));
+    const Outcome outcome = work.Render({"-o", work / "a.png", "--denoise=oidn"});
+    CHECK(outcome.code == 2);
+    CHECK(Contains(outcome.err, missing));
+  }
 }
 
 TEST_CASE("render --denoise: the film of render, denoised, whatever the crop") {

@@ -2,16 +2,18 @@
 // removes.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
 
 #include "bits.h"
 #include "noisy_film.h"
-#include "sheaf/film.h"
+#include "sheaf/render.h"
 #include "simd/kernels.h"
 #include "src/lab/picture_metrics.h"
 #include "src/scalar/filter_noise.h"
+#include "src/scalar/median_of_six.h"
 #include "targets.h"
 
 namespace sheaf {
@@ -39,10 +41,11 @@ struct RandomPlanes {
   // Guides and depths differ little, so that weights are of every size; some pixels are no
   // neighbours, and some colours have no noise.
   explicit RandomPlanes(std::uint64_t seed) {
+    UnitNumbers unit(seed);
     for (std::size_t plane = 0; plane < kPlanes; ++plane) {
       numbers[plane].resize(kSize);
       for (std::size_t i = 0; i < kSize; ++i) {
-        const double u = HashUnit(seed * 1000003 + plane * 7919 + i * 104729);
+        const double u = unit();
         const bool is_variance = plane == 3 || plane == 4;
         const double scaled = is_variance ? (u < 0.1 ? 0 : 0.2 * u) : u < 0.02 ? 1e15 : u;
         numbers[plane][i] = static_cast<Real>(plane < 3 ? u : scaled);
@@ -96,6 +99,33 @@ TEST_CASE_TEMPLATE("the filter on every target", Real, float, double) {
           }
         });
       }
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("medians on every target", Real, float, double) {
+  for (const std::uint32_t count : {1u, 7u, 16u, 35u}) {
+    for (const std::ptrdiff_t step : {1, 64}) {
+      std::vector<Real> numbers(64 * 6);
+      UnitNumbers unit(count);
+      for (Real& number : numbers) number = static_cast<Real>(static_cast<int>(20 * unit()));
+      std::vector<Real> want(count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        Real six[6];
+        for (int k = 0; k < 6; ++k) six[k] = numbers[i + static_cast<std::size_t>(k * step)];
+        std::sort(six, six + 6);
+        want[i] = (six[2] + six[3]) / 2;
+        REQUIRE(scalar::MedianOfSix(&numbers[i], step) == want[i]);
+      }
+      ForEachTarget([&](Target target) {
+        std::vector<Real> medians(PaddedCount(count));
+        const Kernels<Real> kernels = StrictKernels<Real>(target.id());
+        kernels.find_medians(numbers.data(), step, count, medians.data());
+        for (std::uint32_t i = 0; i < count; ++i) REQUIRE(SameBits(want[i], medians[i]));
+        std::vector<Real> in_place = numbers;
+        kernels.find_medians(in_place.data(), step, count, in_place.data());
+        for (std::uint32_t i = 0; i < count; ++i) REQUIRE(SameBits(want[i], in_place[i]));
+      });
     }
   }
 }

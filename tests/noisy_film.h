@@ -6,18 +6,21 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 
 #include "sheaf/film.h"
 
 namespace sheaf {
 
-// In [0, 1), by `key` alone.
-inline double HashUnit(std::uint64_t key) {
-  key += 0x9e3779b97f4a7c15u;
-  key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
-  key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<double>((key ^ (key >> 31)) >> 11) * 0x1p-53;
-}
+// Numbers in [0, 1), the same on every machine, which std::uniform_real_distribution's need not be.
+class UnitNumbers {
+ public:
+  explicit UnitNumbers(std::uint64_t seed) : random_(seed) {}
+  double operator()() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+ private:
+  std::mt19937_64 random_;
+};
 
 inline Layers GuideLayers() {
   Layers layers;
@@ -53,12 +56,13 @@ inline Film RoomFilm(int width, int height) {
 
 // The mean of `samples` estimates of what surfaces reflect, each 3 u² times the light.
 inline Film WithNoise(Film film, int samples) {
+  UnitNumbers unit(static_cast<std::uint64_t>(samples));
   for (int y = 0; y < film.height; ++y) {
     for (int x = 0; x < film.width; ++x) {
       if (std::isinf(*film.at(Layer::kDepth, x, y))) continue;
       double sum = 0;
       for (int i = 0; i < samples; ++i) {
-        const double u = HashUnit((film.index(x, y) << 8) + static_cast<std::uint64_t>(i));
+        const double u = unit();
         sum += 3 * u * u;
       }
       for (int c = 0; c < 3; ++c) film.pixel(x, y)[c] *= static_cast<float>(sum / samples);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "src/app/open_scene.h"
+#include "src/core/build_info.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
@@ -121,6 +123,14 @@ Precision PrecisionOf(const std::string& name) {
     if (name == PrecisionName(precision)) return precision;
   }
   return Precision::kStrict;
+}
+
+Result<DenoiseFilter> ChooseDenoiseFilter(const std::string& name) {
+  if (name != "oidn") return DenoiseFilter::kSheaf;
+  for (const OptionalPart& part : OptionalParts()) {
+    if (part.name == std::string_view(kOidnPart) && part.is_built_in) return DenoiseFilter::kOidn;
+  }
+  return Usage("oidn: this build has no Open Image Denoise");
 }
 
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sheaf/formats.h"
+#include "sheaf/render.h"
 #include "src/app/add_options.h"
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
@@ -28,6 +29,7 @@ struct DenoiseRequest {
   LookOptions look;
   std::string target = "auto";
   std::optional<int> threads;
+  std::string filter = "sheaf";
 };
 
 // An option that names the picture of a layer.
@@ -112,6 +114,8 @@ void AddDenoiseOptions(CLI::App& app, DenoiseRequest& request) {
   AddName(app, "--target", request.target, "auto|scalar|NAME",
           "SIMD target; sheaf info lists the usable ones");
   AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddChoice(app, "--filter", request.filter, {"sheaf", "oidn"},
+            "Sheaf's own, or Open Image Denoise where the build has it");
 }
 
 Status RunDenoise(const DenoiseRequest& given) {
@@ -119,6 +123,8 @@ Status RunDenoise(const DenoiseRequest& given) {
   if (request.output == "-") request.output = kStandardOutputPath;
   const Result<Target> target = ChooseTarget(request.target);
   if (!target) return target.error();
+  const Result<DenoiseFilter> filter = ChooseDenoiseFilter(request.filter);
+  if (!filter) return filter.error();
   if (const Status sound = CheckFiles(request); !sound) return sound;
   Result<ReadPictureResult> read = ReadPicture(request.input);
   if (!read) return read.error();
@@ -134,7 +140,8 @@ Status RunDenoise(const DenoiseRequest& given) {
   }
   if (const Status guided = CheckGuided(request, picture.film); !guided) return guided;
   DecodeLight(picture);
-  const Result<Film> film = Denoise(picture.film, {target.value(), request.threads.value_or(0)});
+  const Result<Film> film =
+      Denoise(picture.film, {target.value(), request.threads.value_or(0), filter.value()});
   if (!film) return film.error();
   if (request.look.exposure) {
     spec.ev = request.look.exposure->ev.value_or(MeterExposure(film.value()));

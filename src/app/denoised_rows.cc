@@ -33,8 +33,11 @@ RenderOptions DenoisedRows::Widen(RenderOptions options) {
   return options;
 }
 
-DenoisedRows::DenoisedRows(const RenderOptions& options)
-    : options_(options), asked_(AreaOf(options)), rendered_(AreaOf(Widen(options))) {
+DenoisedRows::DenoisedRows(const RenderOptions& options, DenoiseFilter filter)
+    : options_(options),
+      filter_(filter),
+      asked_(AreaOf(options)),
+      rendered_(AreaOf(Widen(options))) {
   film_.Resize(rendered_.width(), rendered_.height(), Widen(options).layers);
 }
 
@@ -44,7 +47,7 @@ void DenoisedRows::AddRows(const Film& rows) {
 
 Result<Film> DenoisedRows::Finish() {
   // Precision is of rendering; the filter has one arithmetic.
-  Result<Film> denoised = Denoise(film_, {options_.target, options_.threads});
+  Result<Film> denoised = Denoise(film_, {options_.target, options_.threads, filter_});
   if (!denoised || !options_.crop) return denoised;
   const Film& whole = denoised.value();
   Film asked(asked_.width(), asked_.height(), whole.held_layers());

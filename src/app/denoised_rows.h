@@ -15,7 +15,7 @@ class DenoisedRows {
   static RenderOptions Widen(RenderOptions options);
 
   // `options` are the frame's own.
-  explicit DenoisedRows(const RenderOptions& options);
+  DenoisedRows(const RenderOptions& options, DenoiseFilter filter);
 
   // The next rows from the top, of the frame that is rendered.
   void AddRows(const Film& rows);
@@ -25,6 +25,7 @@ class DenoisedRows {
 
  private:
   RenderOptions options_;
+  DenoiseFilter filter_;
   PixelRect asked_, rendered_;
   Film film_;
   int rows_ = 0;

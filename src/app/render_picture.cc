@@ -77,6 +77,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     if (!look) return look.error();
     frame.look = look.value();
   }
+  frame.is_denoised = !request.denoise.empty();
   // Before the first ray: what cannot be written costs no rendering.
   Result<FrameWriter> writer =
       FrameWriter::Create(scene, frame, options, request.bits, request.scene);
@@ -91,13 +92,17 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     return writer.value().WriteRows(rows);
   };
   std::optional<DenoisedRows> denoised;
-  if (request.denoise) denoised.emplace(options);
+  if (!request.denoise.empty()) {
+    const Result<DenoiseFilter> filter = ChooseDenoiseFilter(request.denoise);
+    if (!filter) return filter.error();
+    denoised.emplace(options, filter.value());
+  }
   const RowSink write = [&](const Film& rows) -> Status {
     if (!denoised) return finish(rows);
     denoised->AddRows(rows);
     return Done{};
   };
-  const RenderOptions rendered = request.denoise ? DenoisedRows::Widen(options) : options;
+  const RenderOptions rendered = denoised ? DenoisedRows::Widen(options) : options;
   // On disk before anything else may fail.
   const RowSink keep_and_write = [&](const Film& rows) {
     const Status kept = journal.value()->Append(rows);

@@ -46,8 +46,9 @@ struct RenderRequest {
   std::optional<PicturePart> part;
   std::optional<PixelRect> crop;
   LookOptions look;
-  Layers layers;  // of --aov
-  bool denoise = false, resume = false;
+  Layers layers;        // of --aov
+  std::string denoise;  // the filter; empty: none
+  bool resume = false;
   std::string identity;  // the options that a picture's bits depend on, as text
   std::string progress = "auto";
   bool quiet = false, no_floor = false;

@@ -17,10 +17,17 @@ constexpr bool kHasOpenImageIo = true;
 constexpr bool kHasOpenImageIo = false;
 #endif
 
+#ifdef SHEAF_HAS_OIDN
+constexpr bool kHasOidn = true;
+#else
+constexpr bool kHasOidn = false;
+#endif
+
 constexpr OptionalPart kOptionalParts[] = {
     {"OpenEXR", "reads and writes .exr", kHasOpenExr},
     {"OpenImageIO", "reads textures and environments of BMP, TGA, TIFF, WebP, HDR and EXR",
      kHasOpenImageIo},
+    {kOidnPart, "denoises instead of Sheaf's own filter", kHasOidn},
 };
 
 }  // namespace

@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <utility>
 
-#include "sheaf/film.h"
 #include "sheaf/render.h"
 #include "simd/kernels.h"
 #include "src/core/parallel.h"
 #include "src/render/estimate_noise.h"
 #include "src/render/noisy_picture.h"
+#include "src/render/oidn_filter.h"
 #include "src/scalar/filter_noise.h"
+#include "src/scalar/median_of_six.h"
 
 namespace sheaf {
 namespace {
@@ -29,21 +30,30 @@ struct Tiles {
   int across, count;
 };
 
+struct DenoiseKernels {
+  FindMediansKernel<float>* find_medians;
+  FilterNoiseKernel<float>* filter_noise;
+};
+
+DenoiseKernels KernelsOf(Target target) {
+  if (target.is_scalar()) return {&scalar::FindMedians<float>, &scalar::FilterNoise<float>};
+  const Kernels<float> kernels = StrictKernels<float>(target.id());
+  return {kernels.find_medians, kernels.filter_noise};
+}
+
 class Denoiser {
  public:
   Denoiser(const Film& film, const DenoiseOptions& options)
       : film_(film),
         threads_(ThreadCount(options.threads)),
-        kernel_(options.target.is_scalar()
-                    ? &scalar::FilterNoise<float>
-                    : StrictKernels<float>(options.target.id()).filter_noise),
+        kernels_(KernelsOf(options.target)),
         picture_(SplitFilm(film, threads_)) {
     for (NoisyPlane& plane : next_) plane.Allocate(film.width, film.height);
     next_variance_.Allocate(film.width, film.height);
   }
 
   Film Run() {
-    EstimateNoise(film_, threads_, next_, &picture_);
+    EstimateNoise(film_, kernels_.find_medians, threads_, next_, &picture_);
     for (int level = 0; level < kDenoiseLevels; ++level) Filter(1 << level);
     return Join();
   }
@@ -61,8 +71,9 @@ class Denoiser {
                            static_cast<std::uint32_t>(std::min(Tiles::kColumns, film_.width - x)),
                            static_cast<std::uint32_t>(std::min(Tiles::kRows, film_.height - y)),
                            step};
-      kernel_(picture_.ViewAt(x, y), tile,
-              {{next_[0].at(x, y), next_[1].at(x, y), next_[2].at(x, y)}, next_variance_.at(x, y)});
+      kernels_.filter_noise(
+          picture_.ViewAt(x, y), tile,
+          {{next_[0].at(x, y), next_[1].at(x, y), next_[2].at(x, y)}, next_variance_.at(x, y)});
     });
     for (int c = 0; c < 3; ++c) std::swap(picture_.colour[c], next_[c]);
     std::swap(picture_.variance, next_variance_);
@@ -92,7 +103,7 @@ class Denoiser {
 
   const Film& film_;
   const int threads_;
-  FilterNoiseKernel<float>* const kernel_;
+  const DenoiseKernels kernels_;
   NoisyPicture picture_;
   NoisyPlane next_[3], next_variance_;
 };
@@ -104,6 +115,7 @@ Result<Film> Denoise(const Film& film, const DenoiseOptions& options) {
     return Error{ErrorKind::kUsage, fmt::format("threads must lie in [0, {}]", kMaxThreads)};
   }
   if (film.width < 1 || film.height < 1) return film;
+  if (options.filter == DenoiseFilter::kOidn) return DenoiseByOidn(film, options.threads);
   return Denoiser(film, options).Run();
 }
 

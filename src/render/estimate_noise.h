@@ -3,6 +3,7 @@
 #define SHEAF_RENDER_ESTIMATE_NOISE_H_
 
 #include "sheaf/film.h"
+#include "simd/find_medians.h"
 #include "src/render/noisy_picture.h"
 
 namespace sheaf {
@@ -22,7 +23,8 @@ inline constexpr int kNoiseReach = 5;
 //
 // Textures of the albedo are not in the light, and colours have no noise of the albedo's: of both
 // estimates, of the light and of the colours over the albedo, the lower counts.
-void EstimateNoise(const Film& film, int threads, NoisyPlane (&scratch)[3], NoisyPicture* picture);
+void EstimateNoise(const Film& film, FindMediansKernel<float>* find_medians, int threads,
+                   NoisyPlane (&scratch)[3], NoisyPicture* picture);
 
 // The mean over the 3 x 3 pixels around each, but for the margin. No plane is the other.
 void MeanOfPatches(const NoisyPlane& from, int width, int height, int threads, NoisyPlane* to);

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "sheaf/error.h"
-#include "sheaf/target.h"
 #include "sheaf/version.h"
 
 namespace sheaf {
@@ -125,27 +123,6 @@ struct Film {
 // The exposure, in stops, that turns the median luminance of what is lit into that of a grey card,
 // 0.18, or up to a third of a stop below; 0 where nothing is lit.
 SHEAF_API double MeterExposure(const Film& film);
-
-// A denoised pixel depends on those at most so many pixels away across and down, so that a crop
-// with so many pixels around it has the bits of the whole picture.
-inline constexpr int kDenoiseReach = 44;
-
-// How a film is denoised.
-struct DenoiseOptions {
-  // What computes it. It never changes a bit of the film.
-  Target target{};
-  // At most so many threads, in [1, 1024]; 0: one a core that the process may use. It never changes
-  // a bit of the film.
-  int threads = 0;
-};
-
-// The film with less noise of the kind that random samples leave, which differs from pixel to pixel
-// (docs/denoising.md). Of its layers albedo, normal and depth tell surfaces apart, whichever it
-// has; none of them changes. What has no noise stays nearly as it is, a film of one colour to the
-// bit. Pixels with a number that is not finite, or beyond 1e15, keep theirs, and are left out of
-// all others. It takes about 100 bytes a pixel meanwhile. kUsage where `threads` is out of range.
-// Any number of films may be denoised at once.
-SHEAF_API Result<Film> Denoise(const Film& film, const DenoiseOptions& options = {});
 
 }  // namespace sheaf
 
