@@ -125,10 +125,12 @@ Precision PrecisionOf(const std::string& name) {
   return Precision::kStrict;
 }
 
-Result<DenoiseFilter> ChooseDenoiseFilter(const std::string& name) {
-  if (name != "oidn") return DenoiseFilter::kSheaf;
+Result<std::optional<DenoiseFilter>> ChooseDenoiseFilter(const std::string& name) {
+  if (name.empty()) return std::optional<DenoiseFilter>();
+  if (name != "oidn") return std::optional(DenoiseFilter::kSheaf);
   for (const OptionalPart& part : OptionalParts()) {
-    if (part.name == std::string_view(kOidnPart) && part.is_built_in) return DenoiseFilter::kOidn;
+    if (part.name == std::string_view(kOidnPart) && part.is_built_in)
+      return std::optional(DenoiseFilter::kOidn);
   }
   return Usage("oidn: this build has no Open Image Denoise");
 }

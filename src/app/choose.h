@@ -35,8 +35,8 @@ Status ChooseTarget(const std::string& target, RenderOptions& options);
 // "strict", "fast" or "double".
 Precision PrecisionOf(const std::string& name);
 
-// "sheaf" or "oidn"; kUsage where the build lacks it.
-Result<DenoiseFilter> ChooseDenoiseFilter(const std::string& name);
+// "sheaf" or "oidn"; nothing for an empty name. kUsage where the build lacks it.
+Result<std::optional<DenoiseFilter>> ChooseDenoiseFilter(const std::string& name);
 
 // A scene's settings, and what the command line says instead.
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,

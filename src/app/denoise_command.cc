@@ -123,7 +123,7 @@ Status RunDenoise(const DenoiseRequest& given) {
   if (request.output == "-") request.output = kStandardOutputPath;
   const Result<Target> target = ChooseTarget(request.target);
   if (!target) return target.error();
-  const Result<DenoiseFilter> filter = ChooseDenoiseFilter(request.filter);
+  const Result<std::optional<DenoiseFilter>> filter = ChooseDenoiseFilter(request.filter);
   if (!filter) return filter.error();
   if (const Status sound = CheckFiles(request); !sound) return sound;
   Result<ReadPictureResult> read = ReadPicture(request.input);
@@ -141,7 +141,7 @@ Status RunDenoise(const DenoiseRequest& given) {
   if (const Status guided = CheckGuided(request, picture.film); !guided) return guided;
   DecodeLight(picture);
   const Result<Film> film =
-      Denoise(picture.film, {target.value(), request.threads.value_or(0), filter.value()});
+      Denoise(picture.film, {target.value(), request.threads.value_or(0), *filter.value()});
   if (!film) return film.error();
   if (request.look.exposure) {
     spec.ev = request.look.exposure->ev.value_or(MeterExposure(film.value()));

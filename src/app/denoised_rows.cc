@@ -1,25 +1,14 @@
 #include "src/app/denoised_rows.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "src/app/choose.h"
 
 namespace sheaf {
 namespace {
 
-// Copies `count` pixels with their layers, as far as both have them.
-void CopyPixels(const Film& from, int from_x, int from_y, int count, Film& to, int to_y) {
-  std::copy_n(from.pixel(from_x, from_y), 3 * count, to.pixel(0, to_y));
-  for (int i = 0; i < kLayerCount; ++i) {
-    const Layer layer = static_cast<Layer>(i);
-    if (!from.has(layer) || !to.has(layer)) continue;
-    std::copy_n(from.at(layer, from_x, from_y), kLayerChannels[i] * count, to.at(layer, 0, to_y));
-  }
-}
-
-}  // namespace
-
-RenderOptions DenoisedRows::Widen(RenderOptions options) {
+RenderOptions Widen(RenderOptions options) {
   for (const Layer layer : {Layer::kAlbedo, Layer::kNormal, Layer::kDepth}) {
     options.layers.Add(layer);
   }
@@ -33,29 +22,45 @@ RenderOptions DenoisedRows::Widen(RenderOptions options) {
   return options;
 }
 
-DenoisedRows::DenoisedRows(const RenderOptions& options, DenoiseFilter filter)
+// Copies `count` pixels with their layers, as far as both have them.
+void CopyPixels(const Film& from, int from_x, int from_y, int count, Film& to, int to_y) {
+  std::copy_n(from.pixel(from_x, from_y), 3 * count, to.pixel(0, to_y));
+  for (int i = 0; i < kLayerCount; ++i) {
+    const Layer layer = static_cast<Layer>(i);
+    if (!from.has(layer) || !to.has(layer)) continue;
+    std::copy_n(from.at(layer, from_x, from_y), kLayerChannels[i] * count, to.at(layer, 0, to_y));
+  }
+}
+
+}  // namespace
+
+DenoisedRows::DenoisedRows(const RenderOptions& options, std::optional<DenoiseFilter> filter,
+                           RowSink sink)
     : options_(options),
       filter_(filter),
-      asked_(AreaOf(options)),
-      rendered_(AreaOf(Widen(options))) {
-  film_.Resize(rendered_.width(), rendered_.height(), Widen(options).layers);
+      sink_(std::move(sink)),
+      work_(filter ? Widen(options) : options) {
+  if (filter_) film_.Resize(AreaOf(work_).width(), AreaOf(work_).height(), work_.layers);
 }
 
-void DenoisedRows::AddRows(const Film& rows) {
+Status DenoisedRows::Write(const Film& rows) {
+  if (!filter_) return sink_(rows);
   for (int y = 0; y < rows.height; ++y) CopyPixels(rows, 0, y, rows.width, film_, rows_++);
+  return Done{};
 }
 
-Result<Film> DenoisedRows::Finish() {
-  // Precision is of rendering; the filter has one arithmetic.
-  Result<Film> denoised = Denoise(film_, {options_.target, options_.threads, filter_});
-  if (!denoised || !options_.crop) return denoised;
-  const Film& whole = denoised.value();
-  Film asked(asked_.width(), asked_.height(), whole.held_layers());
-  for (int y = 0; y < asked.height; ++y) {
-    CopyPixels(whole, asked_.x0 - rendered_.x0, asked_.y0 - rendered_.y0 + y, asked.width, asked,
-               y);
+Status DenoisedRows::Finish() {
+  if (!filter_) return Done{};
+  const Result<Film> denoised = Denoise(film_, {options_.target, options_.threads, *filter_});
+  if (!denoised) return denoised.error();
+  if (!options_.crop) return sink_(denoised.value());
+  const PixelRect asked = AreaOf(options_), rendered = AreaOf(work_);
+  Film rows(asked.width(), asked.height(), work_.layers);
+  for (int y = 0; y < rows.height; ++y) {
+    CopyPixels(denoised.value(), asked.x0 - rendered.x0, asked.y0 - rendered.y0 + y, rows.width,
+               rows, y);
   }
-  return asked;
+  return sink_(rows);
 }
 
 }  // namespace sheaf

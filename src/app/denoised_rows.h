@@ -1,6 +1,8 @@
-// A frame whose rows are denoised when all of them are there.
+// Rows on their way to a picture. Where they are to be denoised they wait until all are there.
 #ifndef SHEAF_APP_DENOISED_ROWS_H_
 #define SHEAF_APP_DENOISED_ROWS_H_
+
+#include <optional>
 
 #include "sheaf/error.h"
 #include "sheaf/film.h"
@@ -10,23 +12,24 @@ namespace sheaf {
 
 class DenoisedRows {
  public:
-  // What has to be rendered for the frame that `options` ask for: with the layers that guide the
-  // filter, and with the pixels around a crop, so that it has the bits of the whole picture.
-  static RenderOptions Widen(RenderOptions options);
+  // `options` are the frame's that is asked for, whose rows `sink` gets. No filter: as they come.
+  DenoisedRows(const RenderOptions& options, std::optional<DenoiseFilter> filter, RowSink sink);
 
-  // `options` are the frame's own.
-  DenoisedRows(const RenderOptions& options, DenoiseFilter filter);
+  // What has to be rendered for it: with the layers that guide the filter, and with the pixels
+  // around a crop, so that it has the bits of the whole picture.
+  const RenderOptions& work() const { return work_; }
 
-  // The next rows from the top, of the frame that is rendered.
-  void AddRows(const Film& rows);
+  // The next rows of that from the top.
+  Status Write(const Film& rows);
 
-  // After all rows: those of the frame that was asked for, and the layers that guided too.
-  Result<Film> Finish();
+  // After all rows.
+  Status Finish();
 
  private:
-  RenderOptions options_;
-  DenoiseFilter filter_;
-  PixelRect asked_, rendered_;
+  const RenderOptions options_;
+  const std::optional<DenoiseFilter> filter_;
+  const RowSink sink_;
+  RenderOptions work_;
   Film film_;
   int rows_ = 0;
 };

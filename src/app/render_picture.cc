@@ -91,26 +91,19 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
     return writer.value().WriteRows(rows);
   };
-  std::optional<DenoisedRows> denoised;
-  if (!request.denoise.empty()) {
-    const Result<DenoiseFilter> filter = ChooseDenoiseFilter(request.denoise);
-    if (!filter) return filter.error();
-    denoised.emplace(options, filter.value());
-  }
-  const RowSink write = [&](const Film& rows) -> Status {
-    if (!denoised) return finish(rows);
-    denoised->AddRows(rows);
-    return Done{};
-  };
-  const RenderOptions rendered = denoised ? DenoisedRows::Widen(options) : options;
+  const Result<std::optional<DenoiseFilter>> filter = ChooseDenoiseFilter(request.denoise);
+  if (!filter) return filter.error();
+  DenoisedRows denoised(options, filter.value(), finish);
+  const RenderOptions& work = denoised.work();
+  const RowSink write = [&](const Film& rows) { return denoised.Write(rows); };
   // On disk before anything else may fail.
   const RowSink keep_and_write = [&](const Film& rows) {
     const Status kept = journal.value()->Append(rows);
     return kept ? write(rows) : kept;
   };
-  PixelRect area = AreaOf(rendered);
+  PixelRect area = AreaOf(work);
   if (journal.value()) {
-    const Result<int> rows = Restore(area, rendered.layers, write, &*journal.value());
+    const Result<int> rows = Restore(area, work.layers, write, &*journal.value());
     if (!rows) return rows.error();
     record.resumed_rows = rows.value();
     if (rows.value() > 0 && !request.quiet) {
@@ -121,7 +114,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   }
   if (area.height() > 0) {
     FrameWatch watch(style, label, options, PixelCount(area));
-    RenderOptions rest = rendered;
+    RenderOptions rest = work;
     if (record.resumed_rows > 0) rest.crop = area;
     const Status rendered =
         RenderRows(scene, *frame.camera, rest, journal.value() ? keep_and_write : write,
@@ -136,11 +129,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     if (!rendered) return rendered.error();
     watch.Finish(record.stats);
   }
-  if (denoised) {
-    const Result<Film> film = denoised->Finish();
-    if (!film) return film.error();
-    if (const Status written = finish(film.value()); !written) return written.error();
-  }
+  if (const Status ended = denoised.Finish(); !ended) return ended.error();
   if (const Status written = writer.value().Finish(); !written) return written.error();
   // A part of a picture may well be empty.
   if (!options.crop && !request.quiet) {
