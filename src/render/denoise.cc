@@ -7,6 +7,7 @@
 #include "sheaf/render.h"
 #include "simd/kernels.h"
 #include "src/core/parallel.h"
+#include "src/render/clamp_speckles.h"
 #include "src/render/estimate_noise.h"
 #include "src/render/noisy_picture.h"
 #include "src/render/oidn_filter.h"
@@ -17,7 +18,9 @@ namespace sheaf {
 namespace {
 
 // A pass looks as far as the filter does, and takes the mean of the variances there.
-constexpr int kReachOfPasses = kDenoiseRadius * ((1 << kDenoiseLevels) - 1) + 2 * kDenoiseLevels;
+// One more pixel is where speckles are looked for.
+constexpr int kReachOfPasses =
+    1 + kDenoiseRadius * ((1 << kDenoiseLevels) - 1) + 2 * kDenoiseLevels;
 static_assert(kReachOfPasses + kNoiseReach <= kDenoiseReach);
 
 struct Tiles {
@@ -54,6 +57,8 @@ class Denoiser {
 
   Film Run() {
     EstimateNoise(film_, kernels_.find_medians, threads_, next_, &picture_);
+    ClampSpeckles(film_, picture_, threads_, next_);
+    TakeColours();
     for (int level = 0; level < kDenoiseLevels; ++level) Filter(1 << level);
     return Join();
   }
@@ -75,10 +80,16 @@ class Denoiser {
           picture_.ViewAt(x, y), tile,
           {{next_[0].at(x, y), next_[1].at(x, y), next_[2].at(x, y)}, next_variance_.at(x, y)});
     });
-    for (int c = 0; c < 3; ++c) std::swap(picture_.colour[c], next_[c]);
+    TakeColours();
     std::swap(picture_.variance, next_variance_);
-    for (NoisyPlane& plane : picture_.colour) plane.RepeatEdges();
     picture_.variance.RepeatEdges();
+  }
+
+  void TakeColours() {
+    for (int c = 0; c < 3; ++c) {
+      std::swap(picture_.colour[c], next_[c]);
+      picture_.colour[c].RepeatEdges();
+    }
   }
 
   // What the light has changed by is added, times the albedo, so that what has not changed keeps
