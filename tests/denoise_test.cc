@@ -254,6 +254,26 @@ TEST_CASE("numbers that are not finite stay where they are, and reach no neighbo
   });
 }
 
+TEST_CASE("a single bright pixel is clamped where there is noise, and stays where there is none") {
+  const auto brighten = [](Film film) {
+    for (int c = 0; c < 3; ++c) film.pixel(100, 75)[c] *= 50;
+    return film;
+  };
+  const Film room = RoomFilm(150, 100), highlight = brighten(room);
+  CHECK(DenoiseOrFail(highlight).pixel(100, 75)[0] == highlight.pixel(100, 75)[0]);
+  const Film noisy = WithNoise(room, 4);
+  const float clean = DenoiseOrFail(noisy).pixel(100, 75)[0];
+  CHECK(DenoiseOrFail(brighten(noisy)).pixel(100, 75)[0] < 3 * clean);
+
+  // The layers of a pixel whose first sample saw something else: dark, beside what is bright.
+  Film mixed(60, 60, GuideLayers());
+  std::fill(mixed.rgb.begin(), mixed.rgb.end(), 0.4f);
+  for (auto& layer : mixed.layers) std::fill(layer.begin(), layer.end(), 0.5f);
+  mixed = WithNoise(std::move(mixed), 16);
+  for (int c = 0; c < 3; ++c) mixed.at(Layer::kAlbedo, 30, 30)[c] = 0.05f;
+  CHECK(DenoiseOrFail(mixed).pixel(30, 30)[0] > 0.2f);
+}
+
 TEST_CASE("pixels farther away than kDenoiseReach change nothing") {
   const Film noisy = WithNoise(RoomFilm(160, 110), 1);
   Film changed = noisy;

@@ -1,6 +1,7 @@
 #include "src/render/clamp_speckles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -11,6 +12,9 @@ namespace {
 
 // A picture is noisy from this deviation on, as a share of what is brightest around.
 constexpr float kNoisyShare = 0.05f;
+
+// The brightest of nine pixels of a noisy plane lies so far above the others, now and then.
+constexpr float kUsualDeviations = 1;
 
 float BrightestAround(const float* at, std::ptrdiff_t stride) {
   const auto column = [&](std::ptrdiff_t x) {
@@ -48,11 +52,12 @@ void ClampSpeckles(const Film& film, const NoisyPicture& picture, int threads,
         square += most[c] * most[c];
       }
       const bool is_noisy = variance[x] > kNoisyShare * kNoisyShare * square;
+      const float usual = kUsualDeviations * std::sqrt(variance[x]);
       for (int c = 0; c < 3; ++c) {
         float colour = *picture.colour[c].at(x, y);
-        if (is_noisy && colour > most[c]) {
+        if (is_noisy && colour > most[c] + usual) {
           const float by_colour = BrightestByColour(film, picture.colour[c], x, y, c);
-          colour = std::min(colour, std::max(most[c], by_colour));
+          colour = std::min(colour, std::max(most[c], by_colour) + usual);
         }
         *clamped[c].at(x, y) = colour;
       }

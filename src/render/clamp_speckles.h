@@ -7,10 +7,10 @@
 
 namespace sheaf {
 
-// Where the picture is noisy no channel of a pixel stays above the brightest of the eight pixels
-// around, in light and in colour: one that does is a rare path's light, which no mean of its
-// neighbours would spread. Where it is not, such a pixel is a highlight. Writes the colours into
-// `clamped`, but for the margin.
+// Where the picture is noisy no channel of a pixel stays a deviation above the brightest of the
+// eight pixels around, in light and in colour: one that does is a rare path's light, which no mean
+// of its neighbours would spread. Where it is not, such a pixel is a highlight. Writes the colours
+// into `clamped`, but for the margin.
 void ClampSpeckles(const Film& film, const NoisyPicture& picture, int threads,
                    NoisyPlane (&clamped)[3]);
 
