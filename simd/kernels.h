@@ -7,7 +7,9 @@
 #include "simd/draw_facets.h"
 #include "simd/draw_samples.h"
 #include "simd/face_light.h"
+#include "simd/filter_noise.h"
 #include "simd/find_footprints.h"
+#include "simd/find_medians.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
 #include "simd/report_target.h"
@@ -35,7 +37,9 @@
   X(ScatterDiffuse, scatter_diffuse)   \
   X(ShadeAmbient, shade_ambient)       \
   X(FaceLight, face_light)             \
-  X(GenerateShadow, generate_shadow)
+  X(GenerateShadow, generate_shadow)   \
+  X(FindMedians, find_medians)         \
+  X(FilterNoise, filter_noise)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).
 #define SHEAF_FAST_KERNELS(X)      \
   X(TraceClosest, trace_closest)   \

@@ -125,6 +125,14 @@ void AddJson(CLI::App& app, std::string& destination, const char* description) {
       ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }
 
+void AddDenoiseFilter(CLI::App& app, const char* name, std::string& filter,
+                      const char* description) {
+  app.add_flag(fmt::format("{}{{sheaf}}", name), filter, description)
+      ->option_text("[=sheaf|oidn]")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw)
+      ->check(CLI::IsMember({"sheaf", "oidn"}));
+}
+
 void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
   AddParsed(app, "--camera", choice.cameras, "NAME[,NAME]", "a list of different camera names",
             "The cameras; the scene's first if absent", &ParseNames);

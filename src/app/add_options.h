@@ -90,6 +90,10 @@ void AddThreads(CLI::App& app, std::vector<int>& threads);
 // --json[=FILE]: "-" where it stands alone.
 void AddJson(CLI::App& app, std::string& destination, const char* description);
 
+// The names that ChooseDenoiseFilter takes.
+void AddDenoiseFilter(CLI::App& app, const char* name, std::string& filter,
+                      const char* description);
+
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "src/app/open_scene.h"
+#include "src/core/build_info.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
@@ -123,6 +125,16 @@ Precision PrecisionOf(const std::string& name) {
   return Precision::kStrict;
 }
 
+Result<std::optional<DenoiseFilter>> ChooseDenoiseFilter(const std::string& name) {
+  if (name.empty()) return std::optional<DenoiseFilter>();
+  if (name != "oidn") return std::optional(DenoiseFilter::kSheaf);
+  for (const OptionalPart& part : OptionalParts()) {
+    if (part.name == std::string_view(kOidnPart) && part.is_built_in)
+      return std::optional(DenoiseFilter::kOidn);
+  }
+  return Usage("oidn: this build has no Open Image Denoise");
+}
+
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
                            const std::optional<int>& samples) {
   RenderOptions options;
@@ -131,6 +143,10 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
   options.samples = samples.value_or(settings.samples);
   options.max_depth = settings.max_depth;
   return options;
+}
+
+PixelRect AreaOf(const RenderOptions& options) {
+  return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
 }
 
 RenderOptions SmallPicture(const RenderOptions& options, int side) {

@@ -35,9 +35,15 @@ Status ChooseTarget(const std::string& target, RenderOptions& options);
 // "strict", "fast" or "double".
 Precision PrecisionOf(const std::string& name);
 
+// "sheaf" or "oidn"; nothing for an empty name. kUsage where the build lacks it.
+Result<std::optional<DenoiseFilter>> ChooseDenoiseFilter(const std::string& name);
+
 // A scene's settings, and what the command line says instead.
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
                            const std::optional<int>& samples);
+
+// The pixels that a frame has: its crop, or all.
+PixelRect AreaOf(const RenderOptions& options);
 
 // The options for a picture of the same proportions, at most `side` pixels each way, with one
 // sample a pixel.

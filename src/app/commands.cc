@@ -4,6 +4,7 @@
 #include "src/app/check_command.h"
 #include "src/app/compare_command.h"
 #include "src/app/convert_command.h"
+#include "src/app/denoise_command.h"
 #include "src/app/diff_command.h"
 #include "src/app/info_command.h"
 #include "src/app/manual_command.h"
@@ -30,6 +31,10 @@ constexpr CommandEntry kCommands[] = {
      "  sheaf merge part1.png part2.png ... -o whole.png\n", &MergeCommand},
     {"convert", "Turn a scene or model into scene JSON, or a picture into another format",
      "  sheaf convert scene.nff -o scene.json\n", &ConvertCommand},
+    {"denoise", "Filter the noise out of a picture, guided by its layers",
+     "  sheaf denoise noisy.exr -o picture.png\n"
+     "  sheaf denoise noisy.pfm --albedo a.pfm --normal n.pfm --depth d.pfm -o picture.pfm\n",
+     &DenoiseCommand},
     {"check", "Validate scenes and say what rendering them would skip",
      "  sheaf check scene.json\n", &CheckCommand},
     {"compare", "Compare targets and threads on a scene bit by bit, or pictures by metrics",

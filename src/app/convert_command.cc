@@ -12,6 +12,7 @@
 #include "src/app/choose_look.h"
 #include "src/app/open_scene.h"
 #include "src/app/output_path.h"
+#include "src/app/picture_as_read.h"
 #include "src/core/atomic_file.h"
 #include "src/formats/format_table.h"
 #include "src/formats/picture.h"
@@ -178,18 +179,8 @@ Status ConvertPicture(const ConvertRequest& request) {
   ReadPictureResult& picture = read.value();
   const Film& film = picture.film;
   const bool keeps = request.transfer.empty() || request.transfer == "keep";
-  PictureSpec spec = WholePicture(film.width, film.height, Transfer::kLinear);
-  if (picture.window.width() > 0) {
-    spec.window = picture.window;
-    spec.full_width = picture.full_width;
-    spec.full_height = picture.full_height;
-  }
-  spec.metadata = picture.metadata;
+  PictureSpec spec = SpecAsRead(picture, named, request.bits);
   spec.format = request.format;
-  // Bits a channel stay where both hold bytes or both floats, and the output can hold as many.
-  const bool is_same_kind = picture.is_display != HoldsFloats(named);
-  const bool keeps_bits = is_same_kind && CheckPictureBits(named, picture.bits).ok();
-  spec.bits = request.bits.value_or(keeps_bits ? picture.bits : 0);
   if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   const bool is_developed = GivenLookOption(request.look) != nullptr;
   if (keeps && picture.is_display && !HoldsFloats(named) && !is_developed) {

@@ -12,7 +12,9 @@ namespace {
 
 // What `sheaf merge` compares to see that parts belong to one picture. It names the camera's place,
 // because the command line may have moved the camera.
-std::string SettingsText(const RenderOptions& options, const Camera& camera, const Look& look) {
+std::string SettingsText(const RenderOptions& options, const Frame& frame) {
+  const Camera& camera = *frame.camera;
+  const Look& look = frame.look;
   const Vec3d& eye = camera.eye;
   const Vec3d& look_at = camera.look_at;
   const bool perspective = std::holds_alternative<Perspective>(camera.projection);
@@ -22,7 +24,7 @@ std::string SettingsText(const RenderOptions& options, const Camera& camera, con
                                                                   : kind.name;
   return fmt::format(
       "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
-      "eye {} {} {}, look at {} {} {}, {} {}{}{}",
+      "eye {} {} {}, look at {} {} {}, {} {}{}{}{}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
       options.error      ? fmt::format(", error {:g}", *options.error)
@@ -30,7 +32,7 @@ std::string SettingsText(const RenderOptions& options, const Camera& camera, con
                          : "",
       eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),
       look.ev != 0 ? fmt::format(", {:.3g} stops", look.ev) : "",
-      look.tone == Tone::kFilmic ? ", filmic" : "");
+      look.tone == Tone::kFilmic ? ", filmic" : "", frame.is_denoised ? ", denoised" : "");
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
   spec.bits = bits.value_or(0);
   spec.metadata = {{"Scene", scene_path},
                    {"Camera", frame.camera->name},
-                   {"Settings", SettingsText(options, *frame.camera, frame.look)}};
+                   {"Settings", SettingsText(options, frame)}};
   spec.ev = frame.look.ev;
   spec.tone = frame.look.tone;
   spec.format = frame.format;

@@ -27,6 +27,7 @@ struct Frame {
   std::string format;  // what the path has to end in, without the dot; empty: it does
   std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
   Look look = {};                                     // of a picture of bytes
+  bool is_denoised = false;
 };
 
 // The picture of a frame, and its layers where they have files of their own.

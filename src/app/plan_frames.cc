@@ -126,6 +126,7 @@ Status CheckCommandLine(const RenderRequest& request) {
     return Usage("--tile, --crop: a part of the picture is one or the other");
   }
   if (const auto chosen = ChooseTarget(request.target); !chosen) return chosen.error();
+  if (const auto chosen = ChooseDenoiseFilter(request.denoise); !chosen) return chosen.error();
 
   // Where a field is part of the folder's name, PlanFrames checks each folder.
   const std::string folder = request.output.substr(0, request.output.rfind('/') + 1);

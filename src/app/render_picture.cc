@@ -6,6 +6,7 @@
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
 #include "src/app/dark_picture.h"
+#include "src/app/denoised_rows.h"
 #include "src/app/interrupt.h"
 #include "src/app/print_message.h"
 #include "src/core/checksum.h"
@@ -15,10 +16,6 @@
 
 namespace sheaf {
 namespace {
-
-PixelRect AreaOf(const RenderOptions& options) {
-  return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
-}
 
 std::uint64_t PixelCount(const PixelRect& area) {
   return static_cast<std::uint64_t>(area.width()) * static_cast<std::uint64_t>(area.height());
@@ -80,6 +77,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     if (!look) return look.error();
     frame.look = look.value();
   }
+  frame.is_denoised = !request.denoise.empty();
   // Before the first ray: what cannot be written costs no rendering.
   Result<FrameWriter> writer =
       FrameWriter::Create(scene, frame, options, request.bits, request.scene);
@@ -88,19 +86,24 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   if (!journal) return journal.error();
   HeatPicture heat(options);
   DarkPicture dark(scene.settings.transfer, frame.look.ev);
-  const RowSink write = [&](const Film& rows) {
+  const RowSink finish = [&](const Film& rows) {
     dark.AddRows(rows);
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
     return writer.value().WriteRows(rows);
   };
+  const Result<std::optional<DenoiseFilter>> filter = ChooseDenoiseFilter(request.denoise);
+  if (!filter) return filter.error();
+  DenoisedRows denoised(options, filter.value(), finish);
+  const RenderOptions& work = denoised.work();
+  const RowSink write = [&](const Film& rows) { return denoised.Write(rows); };
   // On disk before anything else may fail.
   const RowSink keep_and_write = [&](const Film& rows) {
     const Status kept = journal.value()->Append(rows);
     return kept ? write(rows) : kept;
   };
-  PixelRect area = AreaOf(options);
+  PixelRect area = AreaOf(work);
   if (journal.value()) {
-    const Result<int> rows = Restore(area, options.layers, write, &*journal.value());
+    const Result<int> rows = Restore(area, work.layers, write, &*journal.value());
     if (!rows) return rows.error();
     record.resumed_rows = rows.value();
     if (rows.value() > 0 && !request.quiet) {
@@ -111,7 +114,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   }
   if (area.height() > 0) {
     FrameWatch watch(style, label, options, PixelCount(area));
-    RenderOptions rest = options;
+    RenderOptions rest = work;
     if (record.resumed_rows > 0) rest.crop = area;
     const Status rendered =
         RenderRows(scene, *frame.camera, rest, journal.value() ? keep_and_write : write,
@@ -126,6 +129,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     if (!rendered) return rendered.error();
     watch.Finish(record.stats);
   }
+  if (const Status ended = denoised.Finish(); !ended) return ended.error();
   if (const Status written = writer.value().Finish(); !written) return written.error();
   // A part of a picture may well be empty.
   if (!options.crop && !request.quiet) {

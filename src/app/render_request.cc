@@ -75,6 +75,8 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
       EndingsText([](const FileFormat& format) { return format.holds_layers; }));
   AddParsed(app, "--aov", request.layers, "LAYER[,LAYER]",
             "a list of depth, normal, albedo, id, heat", layers.c_str(), &ParseLayers);
+  AddDenoiseFilter(app, "--denoise", request.denoise,
+                   "Filter the noise of random samples, guided by albedo, normals and depth");
   AddBits(app, request.bits);
   AddLookOptions(app, request.look);
   AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");

@@ -47,7 +47,8 @@ struct RenderRequest {
   std::optional<PicturePart> part;
   std::optional<PixelRect> crop;
   LookOptions look;
-  Layers layers;  // of --aov
+  Layers layers;        // of --aov
+  std::string denoise;  // the filter; empty: none
   bool resume = false;
   std::string identity;  // the options that a picture's bits depend on, as text
   std::string progress = "auto";

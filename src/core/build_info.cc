@@ -23,11 +23,18 @@ constexpr bool kHasWindow = true;
 constexpr bool kHasWindow = false;
 #endif
 
+#ifdef SHEAF_HAS_OIDN
+constexpr bool kHasOidn = true;
+#else
+constexpr bool kHasOidn = false;
+#endif
+
 constexpr OptionalPart kOptionalParts[] = {
     {"OpenEXR", "reads and writes .exr", kHasOpenExr},
     {"OpenImageIO", "reads textures and environments of BMP, TGA, TIFF, WebP, HDR and EXR",
      kHasOpenImageIo},
     {"window", "shows scenes in a window, by GLFW, OpenGL and Dear ImGui", kHasWindow},
+    {kOidnPart, "denoises instead of Sheaf's own filter", kHasOidn},
 };
 
 }  // namespace

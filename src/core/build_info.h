@@ -17,6 +17,8 @@ struct OptionalPart {
   bool is_built_in;
 };
 
+inline constexpr const char* kOidnPart = "OpenImageDenoise";
+
 // All of them, whether built in or not.
 std::span<const OptionalPart> OptionalParts();
 

@@ -117,6 +117,37 @@ SHEAF_API Status RenderRows(const Scene& scene, const Camera& camera, const Rend
                             const RowSink& sink, RenderStats* stats = nullptr,
                             RenderProgress* progress = nullptr);
 
+// ---- Denoising ----
+
+// A denoised pixel depends on those at most so many pixels away across and down, so that a crop
+// with so many pixels around it has the bits of the whole picture.
+inline constexpr int kDenoiseReach = 44;
+
+// Which filter denoises.
+enum class DenoiseFilter {
+  kSheaf,  // the library's own, with the same bits everywhere
+  kOidn,   // Intel's Open Image Denoise, where the library was built with it; neither `target` nor
+           // kDenoiseReach is of it, and its bits are its own
+};
+
+// How a film is denoised.
+struct DenoiseOptions {
+  // What computes it. It never changes a bit of the film.
+  Target target{};
+  // At most so many threads, in [1, kMaxThreads]; 0: one a core that the process may use. It never
+  // changes a bit of the film.
+  int threads = 0;
+  DenoiseFilter filter = DenoiseFilter::kSheaf;
+};
+
+// The film with less noise of the kind that random samples leave, which differs from pixel to pixel
+// (docs/denoising.md). Of its layers albedo, normal and depth tell surfaces apart, whichever it
+// has; none of them changes. What has no noise stays nearly as it is, a film of one colour to the
+// bit. Pixels with a number that is not finite, or beyond 1e15, keep theirs, and are left out of
+// all others. It takes about 100 bytes a pixel meanwhile. kUsage where `threads` is out of range,
+// or the build lacks the filter. Any number of films may be denoised at once.
+SHEAF_API Result<Film> Denoise(const Film& film, const DenoiseOptions& options = {});
+
 }  // namespace sheaf
 
 #endif  // SHEAF_SHEAF_RENDER_H_

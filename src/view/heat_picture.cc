@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "src/app/choose.h"
 #include "src/formats/picture.h"
 
 namespace sheaf {
 
 HeatPicture::HeatPicture(const RenderOptions& options)
-    : area_(options.crop.value_or(PixelRect{0, 0, options.width, options.height})),
-      tile_size_(options.tile_size) {}
+    : area_(AreaOf(options)), tile_size_(options.tile_size) {}
 
 void HeatPicture::AddRows(const Film& rows) {
   for (int y = 0; y < rows.height; y += tile_size_) {

@@ -1,0 +1,32 @@
+#include "src/app/picture_as_read.h"
+
+#include "src/formats/picture.h"
+#include "src/scene/srgb.h"
+
+namespace sheaf {
+
+void DecodeLight(ReadPictureResult& picture) {
+  if (picture.is_display && picture.is_srgb) {
+    for (float& value : picture.film.rgb) {
+      value = static_cast<float>(SrgbDecode(static_cast<double>(value)));
+    }
+  }
+  picture.is_display = false;
+}
+
+PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,
+                       std::optional<int> bits) {
+  PictureSpec spec = WholePicture(picture.film.width, picture.film.height, Transfer::kLinear);
+  if (picture.window.width() > 0) {
+    spec.window = picture.window;
+    spec.full_width = picture.full_width;
+    spec.full_height = picture.full_height;
+  }
+  spec.metadata = picture.metadata;
+  const bool is_same_kind = picture.is_display != HoldsFloats(named);
+  const bool keeps_bits = is_same_kind && CheckPictureBits(named, picture.bits).ok();
+  spec.bits = bits.value_or(keeps_bits ? picture.bits : 0);
+  return spec;
+}
+
+}  // namespace sheaf

@@ -1,0 +1,22 @@
+// Pictures that were read, and are written again.
+#ifndef SHEAF_APP_PICTURE_AS_READ_H_
+#define SHEAF_APP_PICTURE_AS_READ_H_
+
+#include <optional>
+#include <string>
+
+#include "sheaf/formats.h"
+
+namespace sheaf {
+
+// Display values become light, where the file says how they are encoded.
+void DecodeLight(ReadPictureResult& picture);
+
+// The spec of the picture, not yet decoded, in a file of `named`: its place and metadata, and as
+// many bits a channel as it had where both hold bytes or both floats. `bits` are those of --bits.
+PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,
+                       std::optional<int> bits);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_APP_PICTURE_AS_READ_H_
