@@ -35,6 +35,7 @@ struct TriangleArrays {
   // of 1 for none. Normals have any length and either side.
   const Real* normal[3][3];  // [vertex][axis]
   const Real* colour[3][3];  // [vertex][channel]
+  const Real* alpha[3][1];   // [vertex][0]; null where no material asks for them
   const std::uint32_t* id;
 
   template <typename Self, typename F>

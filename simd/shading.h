@@ -24,6 +24,8 @@ inline constexpr std::uint32_t kNeedsTerms = 128;
 // that covers: src/scalar/footprint.h. Not among all either: textures and checkers make them.
 inline constexpr std::uint32_t kNeedsWidth = 256;
 inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
+// The alpha of vertices. Comes with the terms; meshes make it.
+inline constexpr std::uint32_t kNeedsVertexAlpha = 1024;
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
 enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };

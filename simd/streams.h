@@ -102,6 +102,7 @@ struct SurfaceFields {
   Field<Real> transmit_r, transmit_g, transmit_b;
   Field<Real> width;                     // of the ray's cone; with kNeedsWidth
   Field<Real> footprint_u, footprint_v;  // how much of u and v it covers; with kNeedsFootprint
+  Field<Real> alpha;                     // of the vertices; with kNeedsVertexAlpha
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -117,7 +118,8 @@ struct SurfaceFields {
       &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
       &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
       &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
-      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v);
+      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
+      &SurfaceFields::alpha);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.

@@ -42,6 +42,7 @@ GeometryArrays<Real>::GeometryArrays(const PrimitiveCounts& counts,
   if (attributes.has_coordinates) ReserveVertices(uv, triangles);
   if (attributes.has_normals) ReserveVertices(normal, triangles);
   if (attributes.has_colours) ReserveVertices(colour, triangles);
+  if (attributes.has_alphas) ReserveVertices(alpha, triangles);
 }
 
 template <typename Real>
@@ -57,6 +58,7 @@ GeometryView<Real> GeometryArrays<Real>::view() const {
   ShowVertices(uv, view.triangles.uv);
   ShowVertices(normal, view.triangles.normal);
   ShowVertices(colour, view.triangles.colour);
+  ShowVertices(alpha, view.triangles.alpha);
   return view;
 }
 

@@ -18,7 +18,7 @@ namespace sheaf {
 struct GltfMaterialUse {
   int texture_set = -1;  // whose TEXCOORD its textures lie by; -1: it has no textures
   bool is_unlit = false;
-  bool has_alpha = false;
+  Alpha alpha;  // what its mode makes of transparent vertices
 };
 
 // Turns metallic and roughness into what a Whitted tracer has (docs/formats.md, "glTF").
@@ -33,6 +33,8 @@ class GltfMaterials {
   // The scene's material for one of the file's; a plain one for -1.
   std::uint32_t MaterialOf(int index);
   GltfMaterialUse UseOf(int index) const;
+  // Told of one of the file's materials that it is seen on vertices which are not opaque.
+  void ShowAlpha(int index);
 
  private:
   struct Surface;
@@ -42,7 +44,6 @@ class GltfMaterials {
   Surface ReadSurface(const tinygltf::Material& from);
   Surface ReadSpecularGlossiness(const tinygltf::Value& from);
   int ChooseSet(Uses& uses, const std::string& place);
-  void SetAlpha(const tinygltf::Material& from, double alpha, Material* material);
   void SetTextures(const tinygltf::Material& from, const Surface& surface, const Uses& uses,
                    Material* material);
 

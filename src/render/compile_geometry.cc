@@ -2,6 +2,7 @@
 
 #include <array>
 #include <glm/common.hpp>
+#include <glm/vec1.hpp>
 #include <map>
 #include <type_traits>
 #include <variant>
@@ -28,6 +29,7 @@ VertexAttributes AttributesOf(const Scene& scene) {
     if (mesh == nullptr) continue;
     attributes.has_normals |= !mesh->normals.empty();
     attributes.has_colours |= !mesh->colours.empty();
+    attributes.has_alphas |= ShowsAlphas(*mesh, scene.materials[object.material]);
   }
   return attributes;
 }
@@ -70,6 +72,7 @@ class GeometryWriter {
       if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, primitive.uv[vertex]);
       if (attributes_.has_normals) Store(arrays_.normal, vertex, i, glm::vec3(0));
       if (attributes_.has_colours) Store(arrays_.colour, vertex, i, glm::vec3(1));
+      if (attributes_.has_alphas) Store(arrays_.alpha, vertex, i, glm::vec1(1));
     }
   }
 
@@ -96,6 +99,9 @@ class GeometryWriter {
         if (attributes_.has_colours) {
           Store(arrays_.colour, vertex, i,
                 mesh.colours.empty() ? glm::vec3(1) : mesh.colours[from]);
+        }
+        if (attributes_.has_alphas) {
+          Store(arrays_.alpha, vertex, i, glm::vec1(mesh.alphas.empty() ? 1 : mesh.alphas[from]));
         }
       }
     }

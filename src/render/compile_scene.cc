@@ -359,6 +359,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     std::uint32_t& needs = compiled.materials[object.material].needs;
     if (!mesh->normals.empty()) needs |= kNeedsNormals;
     if (!mesh->colours.empty()) needs |= kNeedsTint;
+    if (ShowsAlphas(*mesh, scene.materials[object.material])) needs |= kNeedsVertexAlpha;
   }
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));

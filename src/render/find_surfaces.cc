@@ -17,7 +17,7 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
   kernels.surfaces_of(bin.kind)(frame.geometry, batch.rays, hits, bin.batch, material.needs,
                                 output);
   if (bin.kind == PrimitiveKind::kTriangle) {
-    if (material.needs & (kNeedsNormals | kNeedsTint)) {
+    if (material.needs & (kNeedsNormals | kNeedsTint | kNeedsVertexAlpha)) {
       kernels.blend_vertices(frame.geometry.triangles, hits, bin.batch, material.needs, output);
     }
     has_faces = (material.needs & kNeedsNormals) != 0;

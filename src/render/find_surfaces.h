@@ -28,11 +28,12 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
            &Fields::transmit_g, &Fields::transmit_b);
   const std::uint64_t widths = FieldBit(&Fields::width);
   const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
-  return ~(coordinates | faces | curves | tints | terms | widths | footprints) |
+  const std::uint64_t alphas = FieldBit(&Fields::alpha);
+  return ~(coordinates | faces | curves | tints | terms | widths | footprints | alphas) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
          (needs & kNeedsTerms ? terms : 0) | (needs & kNeedsWidth ? widths : 0) |
-         (needs & kNeedsFootprint ? footprints : 0);
+         (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsVertexAlpha ? alphas : 0);
 }
 
 // The fields of texels that these materials look up in so many textures, likewise.

@@ -59,6 +59,8 @@ void SampleTextures(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
   } else {
     std::fill_n(texels.alpha, bin.batch.count, Real(1));
   }
+  if (!(material.needs & kNeedsVertexAlpha) || bin.kind != PrimitiveKind::kTriangle) return;
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) texels.alpha[i] *= surfaces.alpha[i];
 }
 
 template <typename Real>

@@ -24,12 +24,12 @@ struct Texels {
   Real alpha;
 };
 
-// The alpha of the base colour's texture, or 1.
+// The alpha of the vertices, times that of the base colour's texture.
 template <typename Real>
-Real TexelAlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
-                  const Surface<Real>& surface) {
-  if (material.kind != BaseColour::kTexture) return 1;
-  return SampleAlpha(textures[material.texture], surface);
+Real AlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+             const Surface<Real>& surface) {
+  if (material.kind != BaseColour::kTexture) return surface.alpha;
+  return SampleAlpha(textures[material.texture], surface) * surface.alpha;
 }
 
 template <typename Real>
@@ -41,8 +41,7 @@ Texels<Real> TexelsAt(const MaterialData<Real>& material,
     return SampleTexture(textures[texture], surface);
   };
   const Vec3<Real> gloss = sample(finish.metallic_roughness);
-  const Real alpha =
-      finish.alpha == AlphaUse::kOpaque ? 1 : TexelAlphaAt(material, textures, surface);
+  const Real alpha = finish.alpha == AlphaUse::kOpaque ? 1 : AlphaAt(material, textures, surface);
   return {gloss.z,
           gloss.y,
           sample(finish.occlusion).x,
@@ -51,7 +50,7 @@ Texels<Real> TexelsAt(const MaterialData<Real>& material,
           alpha};
 }
 
-// How much of the surface is there, in [0, 1], where its texture's alpha is `alpha`.
+// How much of the surface is there, in [0, 1], where AlphaAt is `alpha`.
 template <typename Real>
 Real ShareThere(const FinishData<Real>& finish, Real alpha) {
   const Real scaled = finish.alpha_factor * alpha;
@@ -73,7 +72,7 @@ Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureD
     passes = passes * SampleTexture(textures[finish.transmission], surface).x;
   }
   if (finish.alpha == AlphaUse::kOpaque) return passes;
-  const Real alpha = ShareThere(finish, TexelAlphaAt(material, textures, surface));
+  const Real alpha = ShareThere(finish, AlphaAt(material, textures, surface));
   const Real gap = 1 - alpha;
   return passes * alpha + Vec3<Real>{gap, gap, gap};
 }

@@ -25,6 +25,7 @@ struct Surface {
   Real bend = 0;  // how far below the face a light may lie, as a cosine; 0 where it is flat
   Real u = 0, v = 0;
   Vec3<Real> tint = {1, 1, 1};  // of the vertices' colours
+  Real alpha = 1;               // of the vertices
   Real offset;
   std::uint32_t source;
   Real width = 0;                         // of the ray's cone there

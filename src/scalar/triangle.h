@@ -297,6 +297,11 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
     surface.tint =
         ((first + (colour(1) - first) * w1) + (colour(2) - first) * w2).template To<Real>();
   }
+  if (triangles.alpha[0][0]) {
+    const auto alpha = [&](int vertex) { return static_cast<W>(triangles.alpha[vertex][0][i]); };
+    const W first = alpha(0);
+    surface.alpha = static_cast<Real>((first + (alpha(1) - first) * w1) + (alpha(2) - first) * w2);
+  }
   if (triangles.uv[0][0]) {
     const auto coordinate = [&](int axis) {
       const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };

@@ -115,7 +115,8 @@ enum class AlphaMode { kOpaque, kMask, kBlend };
 
 struct Alpha {
   AlphaMode mode = AlphaMode::kOpaque;
-  double factor = 1.0;  // [0, 1]: alpha, times that of the texture of the base colour
+  // [0, 1]: alpha, times that of the texture of the base colour and that of a mesh's vertices.
+  double factor = 1.0;
   double cutoff = 0.5;  // [0, 1]
 };
 
@@ -177,6 +178,7 @@ struct Mesh {
   std::vector<glm::vec3> normals;  // for shading, of any length; 0: the face's own
   std::vector<glm::vec2> uv;
   std::vector<glm::vec3> colours;                       // linear, times the base colour
+  std::vector<float> alphas;                            // [0, 1], where the material has an alpha
   std::vector<std::array<std::uint32_t, 3>> triangles;  // vertices, below positions.size()
 };
 
