@@ -87,7 +87,7 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     };
     const W w1 = of_ray(hits.u), w2 = of_ray(hits.v);
     const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
-    const auto mean = [&](const Real* const(&values)[3][3], int axis) HWY_ATTR {
+    const auto mean = [&](const auto& values, int axis) HWY_ATTR {
       return hn::Add(hn::Add(hn::Mul(of_primitive(values[0][axis]), w0),
                              hn::Mul(of_primitive(values[1][axis]), w1)),
                      hn::Mul(of_primitive(values[2][axis]), w2));
@@ -143,6 +143,10 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     if (needs & kNeedsVertexAlpha) {
       const auto& alpha = triangles.alpha;
       hn::StoreU(blend(alpha[0][0], alpha[1][0], alpha[2][0]), dn, surfaces.alpha + i);
+    }
+    if (needs & kNeedsSecondSet) {
+      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 0)), dn, surfaces.u2 + i);
+      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 1)), dn, surfaces.v2 + i);
     }
   }
 }

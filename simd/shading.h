@@ -26,6 +26,7 @@ inline constexpr std::uint32_t kNeedsWidth = 256;
 inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
 // The alpha of vertices. Comes with the terms; meshes make it.
 inline constexpr std::uint32_t kNeedsVertexAlpha = 1024;
+inline constexpr std::uint32_t kNeedsSecondSet = 2048;  // of coordinates; textures make it
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
 enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };
@@ -124,6 +125,7 @@ struct TextureData {
   const Real* decode;  // linear light by byte, 256 of them
   TextureWrap wrap_u, wrap_v;
   TextureFilter filter;
+  std::uint32_t set = 0;  // of the surface's coordinates; 1 only where triangles have `uv2`
   // Where the surface's (u, v) lies on the image: rows of a, b, c with a u + b v + c.
   bool is_moved = false;
   Real to_u[3] = {}, to_v[3] = {};

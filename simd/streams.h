@@ -103,6 +103,9 @@ struct SurfaceFields {
   Field<Real> width;                     // of the ray's cone; with kNeedsWidth
   Field<Real> footprint_u, footprint_v;  // how much of u and v it covers; with kNeedsFootprint
   Field<Real> alpha;                     // of the vertices; with kNeedsVertexAlpha
+  // The same of the second set of coordinates, with kNeedsSecondSet; these fields may be the first
+  // set's where the two are one.
+  Field<Real> u2, v2, footprint_u2, footprint_v2;
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -119,7 +122,8 @@ struct SurfaceFields {
       &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
       &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
       &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
-      &SurfaceFields::alpha);
+      &SurfaceFields::alpha, &SurfaceFields::u2, &SurfaceFields::v2, &SurfaceFields::footprint_u2,
+      &SurfaceFields::footprint_v2);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.
@@ -226,6 +230,16 @@ SurfaceView<Real> WithoutFaces(SurfaceView<Real> surfaces) {
   surfaces.shadow_y = surfaces.position_y;
   surfaces.shadow_z = surfaces.position_z;
   surfaces.bend = nullptr;
+  return surfaces;
+}
+
+// The same surfaces where there is one set of coordinates, which serves for both.
+template <typename Real>
+SurfaceView<Real> WithOneSet(SurfaceView<Real> surfaces) {
+  surfaces.u2 = surfaces.u;
+  surfaces.v2 = surfaces.v;
+  surfaces.footprint_u2 = surfaces.footprint_u;
+  surfaces.footprint_v2 = surfaces.footprint_v;
   return surfaces;
 }
 

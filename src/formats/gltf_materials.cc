@@ -128,7 +128,7 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   const auto& extensions = from.extensions;
   const bool is_unlit = FindExtension(extensions, "KHR_materials_unlit") != nullptr;
   if (is_unlit) uses = {surface.base_texture, {}, {}, {}, {}, {}};
-  uses_.push_back({ChooseSet(uses, place), is_unlit, AlphaOf(from, surface.alpha)});
+  uses_.push_back({ChooseSets(uses, place), is_unlit, AlphaOf(from, surface.alpha)});
 
   Material material;
   material.name = from.name;
@@ -237,17 +237,24 @@ GltfMaterials::Surface GltfMaterials::ReadSpecularGlossiness(const tinygltf::Val
   return surface;
 }
 
-// Surfaces have one set of coordinates: that of the first texture. Those by another are left out.
-int GltfMaterials::ChooseSet(Uses& uses, const std::string& place) {
-  int chosen = -1;
+// Surfaces have two sets of coordinates: those of the first textures. Textures by a third are left
+// out, and those that stay get the number of theirs.
+std::array<int, 2> GltfMaterials::ChooseSets(Uses& uses, const std::string& place) {
+  std::array<int, 2> chosen = {-1, -1};
   for (GltfTextureUse* use : {&uses.base, &uses.emissive, &uses.normal, &uses.gloss,
                               &uses.occlusion, &uses.transmission}) {
     if (use->index < 0) continue;
-    if (chosen < 0) chosen = use->set;
-    if (use->set == chosen) continue;
-    document_.Warn(place, "textures by a second set of coordinates are left out",
-                   fmt::format("TEXCOORD_{} beside TEXCOORD_{}", use->set, chosen));
-    use->index = -1;
+    const auto known = std::find_if(chosen.begin(), chosen.end(),
+                                    [&](int set) { return set < 0 || set == use->set; });
+    if (known == chosen.end()) {
+      document_.Warn(place, "textures by a third set of coordinates are left out",
+                     fmt::format("TEXCOORD_{} beside TEXCOORD_{} and TEXCOORD_{}", use->set,
+                                 chosen[0], chosen[1]));
+      use->index = -1;
+      continue;
+    }
+    *known = use->set;
+    use->set = static_cast<int>(known - chosen.begin());
   }
   return chosen;
 }

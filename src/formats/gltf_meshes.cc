@@ -171,17 +171,20 @@ bool GltfMeshes::ReadPrimitive(const tinygltf::Primitive& primitive, const std::
          ReadTriangles(primitive, place, mesh);
 }
 
-// By the set that the material's textures ask for. Without it they show their first texel.
+// By the sets that the material's textures ask for. Without theirs they show their first texel.
 bool GltfMeshes::ReadTextureCoordinates(const tinygltf::Primitive& primitive,
                                         const std::string& place, Mesh* mesh) {
-  const int set = materials_.UseOf(primitive.material).texture_set;
-  const std::string name = fmt::format("TEXCOORD_{}", std::max(set, 0));
+  const std::array<int, 2> sets = materials_.UseOf(primitive.material).sets;
   const std::size_t count = mesh->positions.size();
-  if (!ReadAttribute(document_, primitive, place, {name, 2, 2}, count, &mesh->uv)) return false;
-  if (set < 0 || !mesh->uv.empty()) return true;
-  document_.Warn(place, "a textured primitive has no coordinates", name);
-  mesh->uv.resize(count, glm::vec2(0.0f));
-  return true;
+  const auto read = [&](int set, std::vector<glm::vec2>* uv) {
+    const std::string name = fmt::format("TEXCOORD_{}", std::max(set, 0));
+    if (!ReadAttribute(document_, primitive, place, {name, 2, 2}, count, uv)) return false;
+    if (set < 0 || !uv->empty()) return true;
+    document_.Warn(place, "a textured primitive has no coordinates", name);
+    uv->resize(count, glm::vec2(0.0f));
+    return true;
+  };
+  return read(sets[0], &mesh->uv) && (sets[1] < 0 || read(sets[1], &mesh->uv2));
 }
 
 bool GltfMeshes::ReadColours(const tinygltf::Primitive& primitive, const std::string& place,

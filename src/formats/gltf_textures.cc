@@ -90,6 +90,7 @@ std::optional<Texture> GltfTextures::Read(const GltfTextureUse& use, Transfer tr
   if (!texture.image) return std::nullopt;
   texture.transfer = transfer;
   texture.transform = use.transform;
+  texture.set = use.set;
   SetSampler(textures[static_cast<std::size_t>(use.index)].sampler, &texture);
   return texture;
 }

@@ -148,6 +148,7 @@ std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source
   if (const JsonCursor transform = object.Optional("transform"); transform.present()) {
     texture.transform = ReadTextureTransform(transform);
   }
+  object.Optional("set").ReadInteger({0, 1, "0 or 1"}, &texture.set);
   object.Finish();
   return texture.image ? std::optional(texture) : std::nullopt;
 }
@@ -230,6 +231,7 @@ Json TextureJson(const Texture& texture) {
                          {"scale", {transform.scale.x, transform.scale.y}},
                          {"rotation", transform.rotation}};
   }
+  if (texture.set != 0) json["set"] = texture.set;
   return json;
 }
 

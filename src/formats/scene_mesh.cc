@@ -65,6 +65,7 @@ Mesh ReadMesh(const JsonCursor& value) {
   };
   of_vertices("normals", kCoordinate, "[x, y, z]", &mesh.normals);
   of_vertices("uv", kCoordinate, "[u, v]", &mesh.uv);
+  of_vertices("uv2", kCoordinate, "[u, v]", &mesh.uv2);
   of_vertices("colours", kStrength, "[r, g, b]", &mesh.colours);
   const JsonCursor alphas = object.Optional("alphas");
   ReadNumbers(alphas, kFraction, &mesh.alphas);
@@ -90,6 +91,7 @@ Json MeshJson(const Mesh& mesh) {
   Json json = {{"positions", VectorsJson(mesh.positions)}};
   if (!mesh.normals.empty()) json["normals"] = VectorsJson(mesh.normals);
   if (!mesh.uv.empty()) json["uv"] = VectorsJson(mesh.uv);
+  if (!mesh.uv2.empty()) json["uv2"] = VectorsJson(mesh.uv2);
   if (!mesh.colours.empty()) json["colours"] = VectorsJson(mesh.colours);
   if (!mesh.alphas.empty()) json["alphas"] = mesh.alphas;
   json["triangles"] = mesh.triangles;

@@ -29,11 +29,17 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
   const std::uint64_t widths = FieldBit(&Fields::width);
   const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
   const std::uint64_t alphas = FieldBit(&Fields::alpha);
-  return ~(coordinates | faces | curves | tints | terms | widths | footprints | alphas) |
+  const std::uint64_t second = bits(&Fields::u2, &Fields::v2);
+  const std::uint64_t second_footprints = bits(&Fields::footprint_u2, &Fields::footprint_v2);
+  const bool has_second = (needs & kNeedsSecondSet) != 0;
+  return ~(coordinates | faces | curves | tints | terms | widths | footprints | alphas | second |
+           second_footprints) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
          (needs & kNeedsTerms ? terms : 0) | (needs & kNeedsWidth ? widths : 0) |
-         (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsVertexAlpha ? alphas : 0);
+         (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsVertexAlpha ? alphas : 0) |
+         (has_second ? second : 0) |
+         (has_second && (needs & kNeedsFootprint) ? second_footprints : 0);
 }
 
 // The fields of texels that these materials look up in so many textures, likewise.

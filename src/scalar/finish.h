@@ -132,17 +132,18 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<R
 }
 
 // The shading normal that a normal map, whose colour here is `colour`, makes of the surface's, on
-// triangle `i`. Its tangents are those of the triangle's surface coordinates, at right angles to
-// the shading normal; a triangle without coordinates, or whose normal would turn to the face's
-// other side, keeps its normal.
+// triangle `i`. `map` is the material's. Its tangents are those of the triangle's surface
+// coordinates, at right angles to the shading normal; a triangle without coordinates, or whose
+// normal would turn to the face's other side, keeps its normal.
 template <typename Real>
-Vec3<Real> BumpedNormal(const MaterialData<Real>& material, Vec3<Real> colour,
-                        const TriangleArrays<Real>& triangles, std::uint32_t i,
+Vec3<Real> BumpedNormal(const MaterialData<Real>& material, const TextureData<Real>& map,
+                        Vec3<Real> colour, const TriangleArrays<Real>& triangles, std::uint32_t i,
                         const Surface<Real>& surface) {
   using W = Wide<Real>;
-  if (!triangles.uv[0][0]) return surface.normal;
+  const auto& coordinates = map.set == 1 ? triangles.uv2 : triangles.uv;
+  if (!coordinates[0][0]) return surface.normal;
   const auto vertex = [&](int k) { return VertexValue(triangles.vertex, k, i); };
-  const auto uv = [&](int k, int axis) { return static_cast<W>(triangles.uv[k][axis][i]); };
+  const auto uv = [&](int k, int axis) { return static_cast<W>(coordinates[k][axis][i]); };
   const Vec3<W> e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
   const W du1 = uv(1, 0) - uv(0, 0), dv1 = uv(1, 1) - uv(0, 1);
   const W du2 = uv(2, 0) - uv(0, 0), dv2 = uv(2, 1) - uv(0, 1);

@@ -112,6 +112,7 @@ void CheckTexture(const std::string& name, const Texture& texture, FirstFault& f
   fault.Components(name + ".transform.offset", texture.transform.offset, kAny);
   fault.Components(name + ".transform.scale", texture.transform.scale, kAny);
   fault.Number(name + ".transform.rotation", texture.transform.rotation, kTurn);
+  fault.Number(name + ".set", texture.set, {0, 1, "0 or 1"});
   if (!texture.image) return fault.Fail(name + ".image is null");
   CheckSides(name + ".image", *texture.image, texture.image->texels.size(), fault);
 }
@@ -155,6 +156,7 @@ void CheckMesh(const Mesh& mesh, FirstFault& fault) {
   fault.PerVertex("positions", mesh.positions, kVertexPlace, vertices);
   fault.PerVertex("normals", mesh.normals, kAny, vertices);
   fault.PerVertex("uv", mesh.uv, kAny, vertices);
+  fault.PerVertex("uv2", mesh.uv2, kAny, vertices);
   fault.PerVertex("colours", mesh.colours, kAtLeastZero, vertices);
   fault.PerVertex("alphas", mesh.alphas, kShare, vertices);
   for (std::size_t i = 0; i < mesh.triangles.size() && !fault.found(); ++i) {
