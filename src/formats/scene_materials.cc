@@ -1,15 +1,11 @@
 #include "src/formats/scene_materials.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "src/core/match.h"
-#include "src/formats/suggest_name.h"
 
 namespace sheaf {
 namespace {
@@ -74,34 +70,11 @@ Checker ReadChecker(const JsonCursor& value, Transfer transfer) {
   return checker;
 }
 
-template <typename Choice, std::size_t count>
-void ReadChoice(const JsonCursor& value,
-                const std::pair<std::string_view, Choice> (&choices)[count], Choice* out) {
-  std::string word;
-  if (!value.ReadString(&word)) return;
-  std::vector<std::string_view> known;
-  for (const auto& [name, choice] : choices) {
-    known.push_back(name);
-    if (name != word) continue;
-    *out = choice;
-    return;
-  }
-  value.Fail(fmt::format("expected one of {}{}", fmt::join(known, ", "), DidYouMean(word, known)));
-}
-
-template <typename Choice, std::size_t count>
-std::string_view NameOf(Choice value, const std::pair<std::string_view, Choice> (&choices)[count]) {
-  for (const auto& [name, choice] : choices) {
-    if (choice == value) return name;
-  }
-  return "";
-}
-
-constexpr std::pair<std::string_view, Wrap> kWraps[] = {
+constexpr NamedChoice<Wrap> kWraps[] = {
     {"repeat", Wrap::kRepeat}, {"mirror", Wrap::kMirror}, {"clamp", Wrap::kClamp}};
-constexpr std::pair<std::string_view, AlphaMode> kAlphaModes[] = {
+constexpr NamedChoice<AlphaMode> kAlphaModes[] = {
     {"opaque", AlphaMode::kOpaque}, {"mask", AlphaMode::kMask}, {"blend", AlphaMode::kBlend}};
-constexpr std::pair<std::string_view, Filter> kFilters[] = {
+constexpr NamedChoice<Filter> kFilters[] = {
     {"mip", Filter::kMip}, {"linear", Filter::kLinear}, {"nearest", Filter::kNearest}};
 
 TextureTransform ReadTextureTransform(const JsonCursor& value) {

@@ -95,15 +95,9 @@ void ReadEnvironment(const JsonCursor& value, ColourSource* source,
   object.Finish();
 }
 
-// Whether the second of two words stands there; an error where neither does.
-bool IsOther(const JsonCursor& value, const char* usual, const char* other) {
-  std::string word;
-  if (!value.ReadString(&word)) return false;
-  if (word != usual && word != other) {
-    value.Fail(fmt::format("expected \"{}\" or \"{}\"", usual, other));
-  }
-  return word == other;
-}
+constexpr NamedChoice<Tone> kTones[] = {{"linear", Tone::kLinear}, {"filmic", Tone::kFilmic}};
+constexpr NamedChoice<Shadows> kShadows[] = {{"through", Shadows::kThrough},
+                                             {"opaque", Shadows::kOpaque}};
 
 Json EnvironmentJson(const Environment& environment) {
   return Match(
@@ -160,10 +154,8 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   } else {
     ev.Read(kStops, &*settings.ev);
   }
-  if (IsOther(object.Optional("tone"), "linear", "filmic")) settings.tone = Tone::kFilmic;
-  if (IsOther(object.Optional("shadows"), "through", "opaque")) {
-    settings.shadows = Shadows::kOpaque;
-  }
+  ReadChoice(object.Optional("tone"), kTones, &settings.tone);
+  ReadChoice(object.Optional("shadows"), kShadows, &settings.shadows);
   object.Finish();
   return settings;
 }
@@ -178,8 +170,8 @@ Json SettingsJson(const Settings& settings) {
   if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
   if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");
-  if (settings.tone == Tone::kFilmic) json["tone"] = "filmic";
-  if (settings.shadows == Shadows::kOpaque) json["shadows"] = "opaque";
+  if (settings.tone != Settings().tone) json["tone"] = NameOf(settings.tone, kTones);
+  if (settings.shadows != Settings().shadows) json["shadows"] = NameOf(settings.shadows, kShadows);
   json["srgb"] = settings.transfer == Transfer::kSrgb ? Json("pictures") : Json(false);
   return json;
 }
