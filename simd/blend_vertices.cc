@@ -87,7 +87,7 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     };
     const W w1 = of_ray(hits.u), w2 = of_ray(hits.v);
     const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
-    const auto mean = [&](const Real* const(&values)[3][3], int axis) HWY_ATTR {
+    const auto mean = [&](const auto& values, int axis) HWY_ATTR {
       return hn::Add(hn::Add(hn::Mul(of_primitive(values[0][axis]), w0),
                              hn::Mul(of_primitive(values[1][axis]), w1)),
                      hn::Mul(of_primitive(values[2][axis]), w2));
@@ -124,17 +124,29 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
           StoreCurve<Real>(triangles, of_primitive, {w0, w1, w2}, is_smooth, surfaces, i);
       }
     }
+    const auto blend = [&](const Real* at0, const Real* at1, const Real* at2) HWY_ATTR {
+      const W first = of_primitive(at0);
+      const W along1 = hn::Sub(of_primitive(at1), first);
+      const W along2 = hn::Sub(of_primitive(at2), first);
+      return Narrow<Real>(hn::Add(hn::Add(first, hn::Mul(along1, w1)), hn::Mul(along2, w2)));
+    };
     if (needs & kNeedsTint) {
       const auto tint = [&](int channel) HWY_ATTR {
         if (!has_colours) return hn::Set(dn, Real(1));
-        const W colour = of_primitive(triangles.colour[0][channel]);
-        const W along1 = hn::Sub(of_primitive(triangles.colour[1][channel]), colour);
-        const W along2 = hn::Sub(of_primitive(triangles.colour[2][channel]), colour);
-        return Narrow<Real>(hn::Add(hn::Add(colour, hn::Mul(along1, w1)), hn::Mul(along2, w2)));
+        const auto& colour = triangles.colour;
+        return blend(colour[0][channel], colour[1][channel], colour[2][channel]);
       };
       hn::StoreU(tint(0), dn, surfaces.tint_r + i);
       hn::StoreU(tint(1), dn, surfaces.tint_g + i);
       hn::StoreU(tint(2), dn, surfaces.tint_b + i);
+    }
+    if (needs & kNeedsVertexAlpha) {
+      const auto& alpha = triangles.alpha;
+      hn::StoreU(blend(alpha[0][0], alpha[1][0], alpha[2][0]), dn, surfaces.alpha + i);
+    }
+    if (needs & kNeedsSecondSet) {
+      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 0)), dn, surfaces.u2 + i);
+      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 1)), dn, surfaces.v2 + i);
     }
   }
 }

@@ -31,10 +31,12 @@ struct TriangleArrays {
   std::uint32_t count;
   const Real* vertex[3][3];  // [vertex][axis]; NaN: never hit (stands for zero area)
   const Real* uv[3][2];      // [vertex][u or v]; null where no material asks for coordinates
+  const Real* uv2[3][2];     // the second set; null where no texture of a mesh asks for it
   // Null where no mesh has them. A normal of 0, or a mean of 0, stands for the face's own; a colour
   // of 1 for none. Normals have any length and either side.
   const Real* normal[3][3];  // [vertex][axis]
   const Real* colour[3][3];  // [vertex][channel]
+  const Real* alpha[3][1];   // [vertex][0]; null where no material asks for them
   const std::uint32_t* id;
 
   template <typename Self, typename F>

@@ -170,6 +170,11 @@ void SampleTextureLanes(const TextureData<Real>& texture, const SurfaceView<Real
   const IndexLanes<Lanes<Real>> di;
   using V = hn::Vec<Lanes<Real>>;
   Real* const outputs[4] = {channels.r, channels.g, channels.b, channels.a};
+  const bool is_second = texture.set == 1;
+  const Real* const at_u = is_second ? surfaces.u2 : surfaces.u;
+  const Real* const at_v = is_second ? surfaces.v2 : surfaces.v;
+  const Real* const covered_u = is_second ? surfaces.footprint_u2 : surfaces.footprint_u;
+  const Real* const covered_v = is_second ? surfaces.footprint_v2 : surfaces.footprint_v;
   Corners<Real> fine = {}, coarse = {};
   for (std::uint32_t i = 0; i < count; i += LaneCount(d)) {
     // Lanes past the count look at (0, 0).
@@ -177,11 +182,11 @@ void SampleTextureLanes(const TextureData<Real>& texture, const SurfaceView<Real
     const auto load = [&](const Real* field) SHEAF_LAMBDA {
       return hn::IfThenElseZero(lanes, hn::LoadU(d, field + i));
     };
-    V u = load(surfaces.u), v = load(surfaces.v);
+    V u = load(at_u), v = load(at_v);
     auto level = hn::Zero(di);
     V share = hn::Zero(d);
     if (texture.level_count > 1) {
-      V width_u = load(surfaces.footprint_u), width_v = load(surfaces.footprint_v);
+      V width_u = load(covered_u), width_v = load(covered_v);
       if (texture.is_moved) {
         const auto widened = [&](const Real(&to)[3]) SHEAF_LAMBDA {
           return hn::Add(hn::Mul(hn::Abs(hn::Set(d, to[0])), width_u),

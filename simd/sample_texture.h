@@ -13,9 +13,10 @@ struct ChannelOutput {
   Real *r, *g, *b, *a;
 };
 
-// Writes what a texture shows at surfaces[0, count), by their u and v and, where the texture has
-// several levels, footprints: red, green and blue in linear light, alpha in [0, 1]. Bits: as
-// sheaf::scalar::SampleTexture and SampleAlpha. Reads and writes PaddedCount(count) lanes.
+// Writes what a texture shows at surfaces[0, count), by its set of their coordinates and, where the
+// texture has several levels, of their footprints: red, green and blue in linear light, alpha in
+// [0, 1]. Bits: as sheaf::scalar::SampleTexture and SampleAlpha. Reads and writes
+// PaddedCount(count) lanes.
 template <typename Real>
 using SampleTextureKernel = void(const TextureData<Real>& texture,
                                  const SurfaceView<Real>& surfaces, std::uint32_t count,

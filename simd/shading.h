@@ -27,10 +27,13 @@ inline constexpr std::uint32_t kNeedsWidth = 256;
 inline constexpr std::uint32_t kNeedsFootprint = 512;  // comes with the width
 // Random numbers for its rays, which a frame asks for that has something to draw from.
 inline constexpr std::uint32_t kNeedsSeed = 1024;
-// Normals drawn for rough mirrors and interfaces: src/scalar/gloss.h.
+// Normals drawn for rough mirrors and interfaces: src/scalar/microfacet.h.
 inline constexpr std::uint32_t kNeedsGloss = 2048;
 // One of its rays alone: src/scalar/choose_lobe.h.
 inline constexpr std::uint32_t kNeedsChoice = 4096;
+// The alpha of vertices. Comes with the terms; meshes make it.
+inline constexpr std::uint32_t kNeedsVertexAlpha = 8192;
+inline constexpr std::uint32_t kNeedsSecondSet = 16384;  // of coordinates; textures make it
 
 // A table of gloss has kGlossEntries numbers for rays that arrive from outside, for square roots of
 // cosines from 0 to 1 in kGlossSteps steps, then as many for rays from inside.
@@ -140,6 +143,7 @@ struct TextureData {
   const Real* decode;  // linear light by byte, 256 of them
   TextureWrap wrap_u, wrap_v;
   TextureFilter filter;
+  std::uint32_t set = 0;  // of the surface's coordinates; 1 only where triangles have `uv2`
   // Where the surface's (u, v) lies on the image: rows of a, b, c with a u + b v + c.
   bool is_moved = false;
   Real to_u[3] = {}, to_v[3] = {};

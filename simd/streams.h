@@ -110,6 +110,10 @@ struct SurfaceFields {
   // With kNeedsChoice: what the throughputs of its rays are multiplied with, 0 for all but one.
   Field<Real> choice_reflect, choice_refract, choice_diffuse;
   Field<Real> scatter;  // how likely the diffuse one was to be followed
+  Field<Real> alpha;    // of the vertices; with kNeedsVertexAlpha
+  // The same of the second set of coordinates, with kNeedsSecondSet; these fields may be the first
+  // set's where the two are one.
+  Field<Real> u2, v2, footprint_u2, footprint_v2;
 
   // What few scenes have comes last, so that arrays that are used together lie together.
   static constexpr auto kFields = std::make_tuple(
@@ -128,7 +132,9 @@ struct SurfaceFields {
       &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
       &SurfaceFields::facet_x, &SurfaceFields::facet_y, &SurfaceFields::facet_z,
       &SurfaceFields::gloss, &SurfaceFields::choice_reflect, &SurfaceFields::choice_refract,
-      &SurfaceFields::choice_diffuse, &SurfaceFields::scatter);
+      &SurfaceFields::choice_diffuse, &SurfaceFields::scatter, &SurfaceFields::alpha,
+      &SurfaceFields::u2, &SurfaceFields::v2, &SurfaceFields::footprint_u2,
+      &SurfaceFields::footprint_v2);
 };
 
 // What textures say of surfaces, one an element. Metallic and roughness before their factors.
@@ -250,6 +256,16 @@ SurfaceView<Real> WithoutFaces(SurfaceView<Real> surfaces) {
   surfaces.shadow_y = surfaces.position_y;
   surfaces.shadow_z = surfaces.position_z;
   surfaces.bend = nullptr;
+  return surfaces;
+}
+
+// The same surfaces where there is one set of coordinates, which serves for both.
+template <typename Real>
+SurfaceView<Real> WithOneSet(SurfaceView<Real> surfaces) {
+  surfaces.u2 = surfaces.u;
+  surfaces.v2 = surfaces.v;
+  surfaces.footprint_u2 = surfaces.footprint_u;
+  surfaces.footprint_v2 = surfaces.footprint_v;
   return surfaces;
 }
 

@@ -3,11 +3,16 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model_files.h"
 #include "same_bits.h"
+#include "src/formats/decoded_images.h"
+#include "src/formats/png.h"
+#include "src/formats/read_scene.h"
 
 namespace sheaf {
 namespace {
@@ -154,6 +159,41 @@ TEST_CASE("glTF animations by name, several at once, and bad ones") {
     const auto read = ReadScene(folder.Write("changed.gltf", text), options);
     if (!read) CHECK(read.error().message.find('\n') == std::string::npos);
   }
+}
+
+TEST_CASE("images are decoded once for all moments, and again where a file changed") {
+  const Folder folder;
+  json gltf = Animated("translation", "LINEAR", {0, 1}, {0, 0, 0, 4, 0, 0}, "VEC3");
+  gltf["images"] = {{{"uri", "red.png"}}};
+  gltf["textures"] = {{{"source", 0}}};
+  gltf["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  gltf["meshes"][0]["primitives"][0]["material"] = 0;
+  folder.Write("red.png", kRedPng);
+  const std::string path = folder.Write("a.gltf", gltf.dump());
+  DecodedImages images;
+  const auto read_at = [&](double time) {
+    ReadOptions options;
+    options.time = time;
+    auto read = ReadScene(path, options, images);
+    REQUIRE(read.ok());
+    CHECK(read.value().warnings.empty());
+    return std::move(read.value().scene);
+  };
+  const auto image_in = [](const Scene& scene) {
+    return std::get<Texture>(scene.materials.at(0).base_colour).image;
+  };
+  const std::shared_ptr<const Image> first = image_in(read_at(0));
+  const Scene later = read_at(0.5);
+  CheckNear(Vec3d(MeshAt(later, 0).positions[0]), {2, 0, 0});
+  CHECK(image_in(later) == first);
+  CHECK(first->name == "red.png");
+  REQUIRE(WritePng({1, 1, {0, 0, 1}}, Transfer::kLinear, folder / "red.png").ok());
+  CHECK(image_in(read_at(0.5))->texels[0] == 0xffff0000u);
+  folder.Write("red.png", "no image");
+  ReadOptions rest;
+  const auto broken = ReadScene(path, rest, images);
+  REQUIRE(broken.ok());
+  CHECK(broken.value().warnings.size() == 1);
 }
 
 TEST_CASE("a camera passes through its keys, smoothly, and rests where they do") {

@@ -188,6 +188,9 @@ std::vector<scalar::Surface<Real>> RandomPlaces(Random& random, std::uint32_t co
   std::fill_n(out.v, StreamCapacity(count), odd[1]);
   std::fill_n(out.footprint_u, StreamCapacity(count), odd[2]);
   std::fill_n(out.footprint_v, StreamCapacity(count), odd[1]);
+  for (Real* second : {out.u2, out.v2, out.footprint_u2, out.footprint_v2}) {
+    std::fill_n(second, StreamCapacity(count), odd[2]);
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
     scalar::Surface<Real>& place = places[i];
     const auto wide = [&] {
@@ -198,9 +201,14 @@ std::vector<scalar::Surface<Real>> RandomPlaces(Random& random, std::uint32_t co
     place.v = static_cast<Real>(random() % 8 == 0 ? 0.5 : Uniform(random, -3, 3));
     place.footprint_u = random() % 16 == 0 ? odd[random() % 4] : wide();
     place.footprint_v = random() % 16 == 0 ? odd[random() % 4] : wide();
+    place.u2 = static_cast<Real>(Uniform(random, -3, 3));
+    place.v2 = static_cast<Real>(Uniform(random, -3, 3));
+    place.footprint_u2 = wide(), place.footprint_v2 = wide();
     place.normal = place.face = {0, 0, 1};
     out.u[i] = place.u, out.v[i] = place.v;
     out.footprint_u[i] = place.footprint_u, out.footprint_v[i] = place.footprint_v;
+    out.u2[i] = place.u2, out.v2[i] = place.v2;
+    out.footprint_u2[i] = place.footprint_u2, out.footprint_v2[i] = place.footprint_v2;
     out.normal_x[i] = out.normal_y[i] = 0, out.normal_z[i] = 1;
     out.source[i] = place.source = 0;
   }
@@ -223,7 +231,8 @@ TEST_CASE_TEMPLATE("look-ups have the same bits on every target", Real, float, d
     Scene described;
     described.materials = {material};
     const CompiledScene<Real> scene = CompileScene<Real>(described);
-    const TextureData<Real>& data = scene.textures[0];
+    TextureData<Real> data = scene.textures[0];
+    data.set = random() % 2;
     const std::uint32_t count = kCounts[round % 10];
     SurfaceStream<Real> stream;
     const auto places = RandomPlaces<Real>(random, count, stream);

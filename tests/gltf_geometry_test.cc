@@ -135,16 +135,38 @@ TEST_CASE("glTF primitives that are not drawn") {
   CHECK(MeshAt(read.value().scene, 0).triangles.size() == 1);
 }
 
-TEST_CASE("the alpha of glTF vertices and colours of unlit ones are said to be lost") {
+TEST_CASE("glTF vertices have an alpha where their material has one") {
   json gltf = OneSquare();
   std::vector<float> colours(16, 1);
-  colours[7] = 0.5f;
+  colours[7] = 0.5f, colours[11] = -1, colours[15] = 3;
   Primitive(gltf)["attributes"]["COLOR_0"] = AddFloats(gltf, colours, "VEC4", 4);
-  CHECK(MeshAt(ReadQuietly(gltf), 0).colours.size() == 4);
-  gltf["materials"][0]["alphaMode"] = "BLEND";
-  ReadWarned(gltf, "alpha of vertices");
-  gltf["materials"][0] = {{"extensions", {{"KHR_materials_unlit", json::object()}}}};
-  CHECK(MeshAt(ReadWarned(gltf, "colours of vertices"), 0).colours.empty());
+  const Scene opaque = ReadQuietly(gltf);
+  CHECK(MeshAt(opaque, 0).colours.size() == 4);
+  CHECK(MeshAt(opaque, 0).alphas.empty());
+  for (const char* mode : {"BLEND", "MASK"}) {
+    gltf["materials"][0]["alphaMode"] = mode;
+    const Scene scene = ReadQuietly(gltf);
+    const Alpha& alpha = scene.materials.at(0).alpha;
+    CHECK(alpha.mode == (mode == std::string("MASK") ? AlphaMode::kMask : AlphaMode::kBlend));
+    CHECK(alpha.factor == 1);
+    CHECK(MeshAt(scene, 0).alphas == std::vector<float>{1, 0.5f, 0, 1});
+  }
+  colours = std::vector<float>(16, 1);
+  Primitive(gltf)["attributes"]["COLOR_0"] = AddFloats(gltf, colours, "VEC4", 4);
+  const Scene solid = ReadQuietly(gltf);
+  CHECK(solid.materials.at(0).alpha.mode == AlphaMode::kOpaque);
+  CHECK(MeshAt(solid, 0).alphas.empty());
+}
+
+TEST_CASE("the colours of unlit glTF vertices are said to be lost, their alpha is kept") {
+  json gltf = OneSquare();
+  const std::vector<float> colours(16, 0.5f);
+  Primitive(gltf)["attributes"]["COLOR_0"] = AddFloats(gltf, colours, "VEC4", 4);
+  gltf["materials"][0] = {{"alphaMode", "BLEND"},
+                          {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+  const Scene scene = ReadWarned(gltf, "colours of vertices");
+  CHECK(MeshAt(scene, 0).colours.empty());
+  CHECK(MeshAt(scene, 0).alphas == std::vector<float>(4, 0.5f));
 }
 
 TEST_CASE("glTF URIs are those of RFC 3986") {

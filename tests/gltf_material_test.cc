@@ -292,7 +292,7 @@ TEST_CASE("glTF images that cannot be had leave the factor") {
   CHECK(alpha == 255);
 }
 
-TEST_CASE("glTF textures lie by one set of coordinates") {
+TEST_CASE("glTF textures lie by two sets of coordinates") {
   const json second = {{"index", 1}, {"texCoord", 1}};
   json gltf = TexturedGltf({{"pbrMetallicRoughness", {{"baseColorTexture", second}}},
                             {"emissiveFactor", {1, 1, 1}},
@@ -304,11 +304,28 @@ TEST_CASE("glTF textures lie by one set of coordinates") {
   CHECK(MeshAt(read.scene, 0).uv[2] == glm::vec2(1, 1));
   attributes = {{"POSITION", 0}};
   CheckWarned(ReadGltf(gltf), "no coordinates: TEXCOORD_1");
-  attributes = {{"POSITION", 0}, {"TEXCOORD_0", 4}, {"TEXCOORD_1", 4}};
+  attributes = {{"POSITION", 0}, {"TEXCOORD_0", 4}, {"TEXCOORD_1", 5}};
+  const float turned[] = {1, 1, 0, 1, 0, 0, 1, 0};
+  std::string buffer;
+  for (const float number : turned) Put(buffer, number, false);
+  gltf["buffers"].push_back(
+      {{"byteLength", buffer.size()}, {"uri", "data:;base64," + Base64(buffer)}});
+  gltf["bufferViews"].push_back({{"buffer", 1}, {"byteLength", buffer.size()}});
+  gltf["accessors"].push_back(
+      {{"bufferView", 6}, {"componentType", 5126}, {"count", 4}, {"type", "VEC2"}});
   gltf["materials"][0]["emissiveTexture"]["texCoord"] = 0;
   const Read mixed = ReadGltf(gltf);
-  CheckWarned(mixed, "TEXCOORD_0 beside TEXCOORD_1");
-  CHECK_FALSE(mixed.material.emission_texture.has_value());
+  CHECK(mixed.warnings.empty());
+  // The base colour comes first: its set is the first here.
+  CHECK(std::get<Texture>(mixed.material.base_colour).set == 0);
+  CHECK(mixed.material.emission_texture.value().set == 1);
+  CHECK(MeshAt(mixed.scene, 0).uv[0] == glm::vec2(1, 1));
+  CHECK(MeshAt(mixed.scene, 0).uv2[2] == glm::vec2(1, 1));
+  CHECK(MeshAt(mixed.scene, 0).uv2[0] == glm::vec2(0, 0));
+  gltf["materials"][0]["occlusionTexture"] = {{"index", 0}, {"texCoord", 2}};
+  const Read third = ReadGltf(gltf);
+  CheckWarned(third, "TEXCOORD_2 beside TEXCOORD_1 and TEXCOORD_0");
+  CHECK_FALSE(third.material.occlusion.has_value());
 }
 
 }  // namespace

@@ -132,13 +132,15 @@ std::optional<std::string> GivenSceneOption(const SceneOptions& options) {
 }
 
 Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options) {
-  Result<ReadSceneResult> result = ReadScene(path, ReadOptionsOf(options));
+  DecodedImages images;
+  Result<ReadSceneResult> result = ReadScene(path, ReadOptionsOf(options), images);
   if (!result) return result.error();
   ReadSceneResult& read = result.value();
   OpenedScene opened{std::move(read.scene), std::move(read.warnings),
                      std::move(read.files), read.duration,
                      read.key_light,        {},
-                     std::nullopt,          std::nullopt};
+                     std::nullopt,          std::nullopt,
+                     std::move(images)};
   Scene& scene = opened.scene;
   opened.cameras = scene.cameras;
   if (options.frame) opened.bounds = BoundsOf(scene);
@@ -161,7 +163,7 @@ Status PoseScene(const std::string& path, const SceneOptions& options, OpenedSce
     ReadOptions at_time = ReadOptionsOf(options);
     at_time.time = time;
     if (!opened->cameras.empty()) at_time.camera = opened->cameras.front();
-    Result<ReadSceneResult> result = ReadScene(path, at_time);
+    Result<ReadSceneResult> result = ReadScene(path, at_time, opened->images);
     if (!result) return result.error();
     scene = std::move(result.value().scene);
     if (const auto& ground = opened->ground) {

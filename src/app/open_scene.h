@@ -9,6 +9,7 @@
 #include "sheaf/error.h"
 #include "sheaf/formats.h"
 #include "sheaf/scene.h"
+#include "src/formats/decoded_images.h"
 #include "src/scene/bounds.h"
 
 namespace CLI {
@@ -62,6 +63,7 @@ struct OpenedScene {
   std::vector<Camera> cameras;
   std::optional<Bounds> bounds;  // of what the file holds, where a frame is asked for
   std::optional<Ground> ground;
+  DecodedImages images;  // for the next moment
 };
 Result<OpenedScene> OpenSceneWithWarnings(const std::string& path, const SceneOptions& options);
 

@@ -40,8 +40,10 @@ GeometryArrays<Real>::GeometryArrays(const PrimitiveCounts& counts,
   }
   const std::uint32_t triangles = counts[PrimitiveKind::kTriangle];
   if (attributes.has_coordinates) ReserveVertices(uv, triangles);
+  if (attributes.has_second_set) ReserveVertices(uv2, triangles);
   if (attributes.has_normals) ReserveVertices(normal, triangles);
   if (attributes.has_colours) ReserveVertices(colour, triangles);
+  if (attributes.has_alphas) ReserveVertices(alpha, triangles);
 }
 
 template <typename Real>
@@ -55,8 +57,10 @@ GeometryView<Real> GeometryArrays<Real>::view() const {
     arrays.count = counts_[arrays.kKind];
   });
   ShowVertices(uv, view.triangles.uv);
+  ShowVertices(uv2, view.triangles.uv2);
   ShowVertices(normal, view.triangles.normal);
   ShowVertices(colour, view.triangles.colour);
+  ShowVertices(alpha, view.triangles.alpha);
   return view;
 }
 

@@ -15,7 +15,8 @@ namespace sheaf {
 
 // What the vertices of triangles may have besides their positions.
 struct VertexAttributes {
-  bool has_coordinates = false, has_normals = false, has_colours = false;
+  bool has_coordinates = false, has_normals = false, has_colours = false, has_alphas = false,
+       has_second_set = false;
 };
 
 // The arrays behind a GeometryView. They are filled primitive by primitive, each of them once, in
@@ -43,7 +44,8 @@ class GeometryArrays {
   std::uint32_t* ids(PrimitiveKind kind) { return kinds_[IndexOf(kind)].id.data(); }
   GeometryView<Real> view() const;
 
-  AlignedArray<Real> uv[3][2], normal[3][3], colour[3][3];  // of triangles; empty where unused
+  // Of triangles; empty where unused.
+  AlignedArray<Real> uv[3][2], uv2[3][2], normal[3][3], colour[3][3], alpha[3][1];
 
  private:
   struct Kind {

@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -42,6 +43,11 @@ class GltfDocument {
   const GltfImage& image(std::size_t index) const { return images_[index]; }
   // The bytes of an image as they lie in its file. An error, without a place, where there are none.
   Result<std::string> ImageBytes(std::size_t index);
+
+  // As DecodedImages::Decode.
+  Result<std::shared_ptr<const Image>> Decode(std::string_view bytes, const std::string& name) {
+    return files_.images().Decode(bytes, name);
+  }
 
   // Keeps the first fault and returns false. `place` is a JSON pointer, or empty.
   bool Fail(std::string place, std::string_view what);

@@ -67,6 +67,23 @@ glm::dvec4 MeanOf(const Image& image) {
   return sum / (255.0 * static_cast<double>(std::max<std::size_t>(image.texels.size(), 1)));
 }
 
+// By the material's mode. Nothing reaches a cutoff above 1.
+Alpha AlphaOf(const tinygltf::Material& from, double factor) {
+  if (from.alphaMode == "BLEND") return {AlphaMode::kBlend, Share(factor), 0.5};
+  if (from.alphaMode != "MASK") return {};
+  const bool is_nothing = from.alphaCutoff > 1;
+  return {AlphaMode::kMask, is_nothing ? 0 : Share(factor), Share(from.alphaCutoff)};
+}
+
+// Whether anything shows of it, where vertices are opaque. What is opaque everywhere stays so: many
+// files ask for blending that needs none.
+bool IsSeenThrough(const Alpha& alpha, const Material& material) {
+  if (alpha.mode == AlphaMode::kOpaque) return false;
+  const auto* base = std::get_if<Texture>(&material.base_colour);
+  if (base != nullptr && HasAlpha(*base->image)) return true;
+  return alpha.factor < (alpha.mode == AlphaMode::kMask ? alpha.cutoff : 1.0);
+}
+
 std::string FaultOf(const Material& material, const Colour& base) {
   for (const double number : {material.kd, material.ks, base.x, base.y, base.z, material.emission.x,
                               material.emission.y, material.emission.z, material.ior}) {
@@ -97,6 +114,10 @@ GltfMaterialUse GltfMaterials::UseOf(int index) const {
   return IsIndexOf(index, uses_) ? uses_[static_cast<std::size_t>(index)] : GltfMaterialUse{};
 }
 
+void GltfMaterials::ShowAlpha(int index) {
+  scene_.materials[MaterialOf(index)].alpha = UseOf(index).alpha;
+}
+
 bool GltfMaterials::ReadMaterial(std::size_t index) {
   const tinygltf::Material& from = document_.model().materials[index];
   const std::string place = fmt::format("/materials/{}", index);
@@ -107,7 +128,7 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   const auto& extensions = from.extensions;
   const bool is_unlit = FindExtension(extensions, "KHR_materials_unlit") != nullptr;
   if (is_unlit) uses = {surface.base_texture, {}, {}, {}, {}, {}};
-  uses_.push_back({ChooseSet(uses, place), is_unlit, from.alphaMode != "OPAQUE"});
+  uses_.push_back({ChooseSets(uses, place), is_unlit, AlphaOf(from, surface.alpha)});
 
   Material material;
   material.name = from.name;
@@ -135,7 +156,7 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
     material.emission[c] = std::max(from.emissiveFactor[static_cast<std::size_t>(c)] * glow, 0.0);
   }
   SetTextures(from, surface, uses, &material);
-  SetAlpha(from, surface.alpha, &material);
+  if (IsSeenThrough(uses_.back().alpha, material)) material.alpha = uses_.back().alpha;
   if (is_unlit) {
     MakeUnlit(surface.base, &material);
   } else {
@@ -216,17 +237,24 @@ GltfMaterials::Surface GltfMaterials::ReadSpecularGlossiness(const tinygltf::Val
   return surface;
 }
 
-// Surfaces have one set of coordinates: that of the first texture. Those by another are left out.
-int GltfMaterials::ChooseSet(Uses& uses, const std::string& place) {
-  int chosen = -1;
+// Surfaces have two sets of coordinates: those of the first textures. Textures by a third are left
+// out, and those that stay get the number of theirs.
+std::array<int, 2> GltfMaterials::ChooseSets(Uses& uses, const std::string& place) {
+  std::array<int, 2> chosen = {-1, -1};
   for (GltfTextureUse* use : {&uses.base, &uses.emissive, &uses.normal, &uses.gloss,
                               &uses.occlusion, &uses.transmission}) {
     if (use->index < 0) continue;
-    if (chosen < 0) chosen = use->set;
-    if (use->set == chosen) continue;
-    document_.Warn(place, "textures by a second set of coordinates are left out",
-                   fmt::format("TEXCOORD_{} beside TEXCOORD_{}", use->set, chosen));
-    use->index = -1;
+    const auto known = std::find_if(chosen.begin(), chosen.end(),
+                                    [&](int set) { return set < 0 || set == use->set; });
+    if (known == chosen.end()) {
+      document_.Warn(place, "textures by a third set of coordinates are left out",
+                     fmt::format("TEXCOORD_{} beside TEXCOORD_{} and TEXCOORD_{}", use->set,
+                                 chosen[0], chosen[1]));
+      use->index = -1;
+      continue;
+    }
+    *known = use->set;
+    use->set = static_cast<int>(known - chosen.begin());
   }
   return chosen;
 }
@@ -256,21 +284,6 @@ void GltfMaterials::SetTextures(const tinygltf::Material& from, const Surface& s
     material->normal_map =
         NormalMap{*std::move(normal), std::clamp(from.normalTexture.scale, -1e6, 1e6)};
   }
-}
-
-// What is opaque everywhere stays so: many files ask for blending that needs none.
-void GltfMaterials::SetAlpha(const tinygltf::Material& from, double alpha, Material* material) {
-  if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
-  const auto* base = std::get_if<Texture>(&material->base_colour);
-  const double cutoff = std::max(from.alphaCutoff, 0.0);
-  const bool is_mask = from.alphaMode == "MASK";
-  const double least = is_mask ? std::min(cutoff, 1.0) : 1.0;
-  const bool is_varied = base != nullptr && HasAlpha(*base->image);
-  if (!is_varied && alpha >= least && !(is_mask && cutoff > 1)) return;
-  material->alpha.mode = is_mask ? AlphaMode::kMask : AlphaMode::kBlend;
-  material->alpha.factor = is_mask && cutoff > 1 ? 0 : Share(alpha);
-  // Nothing reaches a cutoff above 1.
-  material->alpha.cutoff = is_mask ? (cutoff > 1 ? 1 : cutoff) : 0.5;
 }
 
 }  // namespace sheaf

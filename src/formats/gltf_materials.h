@@ -2,6 +2,7 @@
 #ifndef SHEAF_FORMATS_GLTF_MATERIALS_H_
 #define SHEAF_FORMATS_GLTF_MATERIALS_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,9 +17,10 @@ namespace sheaf {
 
 // What meshes have to know of their material.
 struct GltfMaterialUse {
-  int texture_set = -1;  // whose TEXCOORD its textures lie by; -1: it has no textures
+  // Whose TEXCOORD its textures lie by, those of set 0 and those of set 1; -1: there are none.
+  std::array<int, 2> sets = {-1, -1};
   bool is_unlit = false;
-  bool has_alpha = false;
+  Alpha alpha;  // what its mode makes of transparent vertices
 };
 
 // Turns metallic and roughness into what a Whitted tracer has (docs/formats.md, "glTF").
@@ -33,6 +35,8 @@ class GltfMaterials {
   // The scene's material for one of the file's; a plain one for -1.
   std::uint32_t MaterialOf(int index);
   GltfMaterialUse UseOf(int index) const;
+  // Told of one of the file's materials that it is seen on vertices which are not opaque.
+  void ShowAlpha(int index);
 
  private:
   struct Surface;
@@ -41,8 +45,7 @@ class GltfMaterials {
   bool ReadMaterial(std::size_t index);
   Surface ReadSurface(const tinygltf::Material& from);
   Surface ReadSpecularGlossiness(const tinygltf::Value& from);
-  int ChooseSet(Uses& uses, const std::string& place);
-  void SetAlpha(const tinygltf::Material& from, double alpha, Material* material);
+  std::array<int, 2> ChooseSets(Uses& uses, const std::string& place);
   void SetTextures(const tinygltf::Material& from, const Surface& surface, const Uses& uses,
                    Material* material);
 

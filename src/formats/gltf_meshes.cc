@@ -171,17 +171,20 @@ bool GltfMeshes::ReadPrimitive(const tinygltf::Primitive& primitive, const std::
          ReadTriangles(primitive, place, mesh);
 }
 
-// By the set that the material's textures ask for. Without it they show their first texel.
+// By the sets that the material's textures ask for. Without theirs they show their first texel.
 bool GltfMeshes::ReadTextureCoordinates(const tinygltf::Primitive& primitive,
                                         const std::string& place, Mesh* mesh) {
-  const int set = materials_.UseOf(primitive.material).texture_set;
-  const std::string name = fmt::format("TEXCOORD_{}", std::max(set, 0));
+  const std::array<int, 2> sets = materials_.UseOf(primitive.material).sets;
   const std::size_t count = mesh->positions.size();
-  if (!ReadAttribute(document_, primitive, place, {name, 2, 2}, count, &mesh->uv)) return false;
-  if (set < 0 || !mesh->uv.empty()) return true;
-  document_.Warn(place, "a textured primitive has no coordinates", name);
-  mesh->uv.resize(count, glm::vec2(0.0f));
-  return true;
+  const auto read = [&](int set, std::vector<glm::vec2>* uv) {
+    const std::string name = fmt::format("TEXCOORD_{}", std::max(set, 0));
+    if (!ReadAttribute(document_, primitive, place, {name, 2, 2}, count, uv)) return false;
+    if (set < 0 || !uv->empty()) return true;
+    document_.Warn(place, "a textured primitive has no coordinates", name);
+    uv->resize(count, glm::vec2(0.0f));
+    return true;
+  };
+  return read(sets[0], &mesh->uv) && (sets[1] < 0 || read(sets[1], &mesh->uv2));
 }
 
 bool GltfMeshes::ReadColours(const tinygltf::Primitive& primitive, const std::string& place,
@@ -190,6 +193,9 @@ bool GltfMeshes::ReadColours(const tinygltf::Primitive& primitive, const std::st
   const auto found = primitive.attributes.find("COLOR_0");
   if (found == primitive.attributes.end()) return true;
   const GltfMaterialUse use = materials_.UseOf(primitive.material);
+  if (use.alpha.mode != AlphaMode::kOpaque && !ReadAlphas(primitive, found->second, place, mesh)) {
+    return false;
+  }
   if (use.is_unlit) {
     document_.Warn(place, "an unlit material does not show the colours of vertices");
     return true;
@@ -198,14 +204,28 @@ bool GltfMeshes::ReadColours(const tinygltf::Primitive& primitive, const std::st
     return false;
   }
   for (glm::vec3& colour : mesh->colours) colour = glm::max(colour, glm::vec3(0));
-  if (!use.has_alpha) return true;
-  const auto numbers = ReadAccessor(document_, found->second, 3, 4);
+  return true;
+}
+
+// Of colours that have an alpha. Where all are opaque the mesh has none.
+bool GltfMeshes::ReadAlphas(const tinygltf::Primitive& primitive, int colours,
+                            const std::string& place, Mesh* mesh) {
+  const auto numbers = ReadAccessor(document_, colours, 3, 4);
   if (!numbers) return false;
-  for (std::size_t i = 3; numbers->components == 4 && i < numbers->values.size(); i += 4) {
-    if (numbers->values[i] >= 1) continue;
-    document_.Warn(place, "the alpha of vertices is not read");
-    break;
+  if (numbers->components < 4) return true;
+  std::vector<float> alphas;
+  bool is_opaque = true;
+  for (std::size_t i = 3; i < numbers->values.size(); i += 4) {
+    const double alpha = numbers->values[i];
+    if (std::isnan(alpha))
+      document_.Warn(place, "a number is not finite", fmt::format("COLOR_0 {}", i / 4));
+    const double share = std::isnan(alpha) ? 1 : std::clamp(alpha, 0.0, 1.0);
+    is_opaque = is_opaque && share == 1;
+    alphas.push_back(static_cast<float>(share));
   }
+  if (is_opaque || alphas.size() != mesh->positions.size()) return true;
+  mesh->alphas = std::move(alphas);
+  materials_.ShowAlpha(primitive.material);
   return true;
 }
 

@@ -39,6 +39,8 @@ class GltfMeshes {
   const char* CompressionOf(int accessor) const;
   bool ReadPrimitive(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);
   bool ReadColours(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);
+  bool ReadAlphas(const tinygltf::Primitive& primitive, int colours, const std::string& place,
+                  Mesh* mesh);
   bool ReadTextureCoordinates(const tinygltf::Primitive& primitive, const std::string& place,
                               Mesh* mesh);
   bool ReadTriangles(const tinygltf::Primitive& primitive, const std::string& place, Mesh* mesh);

@@ -7,7 +7,6 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "src/formats/image.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -90,6 +89,7 @@ std::optional<Texture> GltfTextures::Read(const GltfTextureUse& use, Transfer tr
   if (!texture.image) return std::nullopt;
   texture.transfer = transfer;
   texture.transform = use.transform;
+  texture.set = use.set;
   SetSampler(textures[static_cast<std::size_t>(use.index)].sampler, &texture);
   return texture;
 }
@@ -115,16 +115,14 @@ std::shared_ptr<const Image> GltfTextures::ImageOf(int texture) {
     document_.Warn(place, kLost, bytes.error().message);
     return nullptr;
   }
-  Result<Image> decoded = DecodeImage(bytes.value());
+  const auto decoded = document_.Decode(bytes.value(), IsDataUri(uri) ? "" : DecodeUriPath(uri));
   if (!decoded) {
     document_.Warn(place, kLost,
                    uri.empty() ? decoded.error().message
                                : fmt::format("{}: {}", ShowUri(uri), decoded.error().message));
     return nullptr;
   }
-  decoded.value().name = IsDataUri(uri) ? "" : DecodeUriPath(uri);
-  slot.image = std::make_shared<const Image>(std::move(decoded).value());
-  return slot.image;
+  return slot.image = decoded.value();
 }
 
 void GltfTextures::SetSampler(int index, Texture* out) const {

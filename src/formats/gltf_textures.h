@@ -31,7 +31,7 @@ const tinygltf::Value* FindExtension(const tinygltf::ExtensionMap& extensions, c
 // How a material asks for a texture.
 struct GltfTextureUse {
   int index = -1;  // none
-  int set = 0;     // of the texture coordinates
+  int set = 0;     // of the file's texture coordinates; then of the scene's two, 0 or 1
   TextureTransform transform;
 };
 

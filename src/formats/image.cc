@@ -150,12 +150,11 @@ Result<std::shared_ptr<const Image>> ImageCache::Load(const std::string& from,
   if (image) return image;
   const Result<std::string> bytes = ReadWholeFile(path.value());
   if (!bytes) return bytes.error();
-  Result<Image> decoded = DecodeImage(bytes.value());
+  const std::string name = std::filesystem::path(path.value()).filename().string();
+  const auto decoded = files.images().Decode(bytes.value(), name);
   if (!decoded)
     return Refused(fmt::format("{}: {}", Printable(reference), decoded.error().message));
-  decoded.value().name = std::filesystem::path(path.value()).filename().string();
-  image = std::make_shared<const Image>(std::move(decoded).value());
-  return image;
+  return image = decoded.value();
 }
 
 }  // namespace sheaf

@@ -83,8 +83,14 @@ Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files) {
 }
 
 Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options) {
+  DecodedImages images;
+  return ReadScene(path, options, images);
+}
+
+Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options,
+                                  DecodedImages& images) {
   try {
-    SceneFiles files(path, options);
+    SceneFiles files(path, options, &images);
     files.Enter(path);
     Result<Scene> scene = ReadSceneFile(path, files);
     if (!scene) return scene.error();

@@ -18,6 +18,10 @@ bool IsModelPath(const std::string& path);
 // What the file holds and nothing more: a model may lack cameras, lights and materials of its own.
 Result<Scene> ReadSceneFile(const std::string& path, SceneFiles& files);
 
+// ReadScene that decodes no image again which is in `images`, and puts there what it decodes.
+Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options,
+                                  DecodedImages& images);
+
 // What models without materials are made of: matt and grey. White ambient light shows a part of the
 // colours of all models.
 inline constexpr double kModelAmbient = 0.25;

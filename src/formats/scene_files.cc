@@ -18,8 +18,11 @@ fs::path Canonical(const fs::path& path) {
 
 }  // namespace
 
-SceneFiles::SceneFiles(const std::string& scene, const ReadOptions& options)
-    : options_(options), root_(Canonical(fs::path(scene).parent_path() / ".")), paths_{scene} {}
+SceneFiles::SceneFiles(const std::string& scene, const ReadOptions& options, DecodedImages* images)
+    : options_(options),
+      images_(images),
+      root_(Canonical(fs::path(scene).parent_path() / ".")),
+      paths_{scene} {}
 
 Result<std::string> SceneFiles::Resolve(const std::string& from, const std::string& reference) {
   if (reference.empty() || reference.find('\0') != std::string::npos) {

@@ -9,6 +9,7 @@
 
 #include "sheaf/error.h"
 #include "sheaf/formats.h"
+#include "src/formats/decoded_images.h"
 #include "src/formats/warnings.h"
 
 namespace sheaf {
@@ -17,9 +18,12 @@ namespace sheaf {
 // they have to say.
 class SceneFiles {
  public:
-  SceneFiles(const std::string& scene, const ReadOptions& options);
+  // `images`, if any, outlive it.
+  SceneFiles(const std::string& scene, const ReadOptions& options, DecodedImages* images = nullptr);
 
   const ReadOptions& options() const { return options_; }
+
+  DecodedImages& images() { return images_ != nullptr ? *images_ : own_images_; }
 
   // The path of `reference`, as the file `from` names it: relative to its folder. An error, without
   // a place, where it leaves the scene's folder and may not.
@@ -46,6 +50,8 @@ class SceneFiles {
 
  private:
   ReadOptions options_;
+  DecodedImages* images_;
+  DecodedImages own_images_;
   std::filesystem::path root_;
   std::vector<std::filesystem::path> open_;
   Warnings warnings_;

@@ -1,15 +1,11 @@
 #include "src/formats/scene_materials.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "src/core/match.h"
-#include "src/formats/read_choice.h"
 
 namespace sheaf {
 namespace {
@@ -75,11 +71,11 @@ Checker ReadChecker(const JsonCursor& value, Transfer transfer) {
   return checker;
 }
 
-constexpr std::pair<std::string_view, Wrap> kWraps[] = {
+constexpr NamedChoice<Wrap> kWraps[] = {
     {"repeat", Wrap::kRepeat}, {"mirror", Wrap::kMirror}, {"clamp", Wrap::kClamp}};
-constexpr std::pair<std::string_view, AlphaMode> kAlphaModes[] = {
+constexpr NamedChoice<AlphaMode> kAlphaModes[] = {
     {"opaque", AlphaMode::kOpaque}, {"mask", AlphaMode::kMask}, {"blend", AlphaMode::kBlend}};
-constexpr std::pair<std::string_view, Filter> kFilters[] = {
+constexpr NamedChoice<Filter> kFilters[] = {
     {"mip", Filter::kMip}, {"linear", Filter::kLinear}, {"nearest", Filter::kNearest}};
 
 TextureTransform ReadTextureTransform(const JsonCursor& value) {
@@ -126,6 +122,7 @@ std::optional<Texture> ReadTexture(const JsonCursor& value, ColourSource* source
   if (const JsonCursor transform = object.Optional("transform"); transform.present()) {
     texture.transform = ReadTextureTransform(transform);
   }
+  object.Optional("set").ReadInteger({0, 1, "0 or 1"}, &texture.set);
   object.Finish();
   return texture.image ? std::optional(texture) : std::nullopt;
 }
@@ -208,6 +205,7 @@ Json TextureJson(const Texture& texture) {
                          {"scale", {transform.scale.x, transform.scale.y}},
                          {"rotation", transform.rotation}};
   }
+  if (texture.set != 0) json["set"] = texture.set;
   return json;
 }
 

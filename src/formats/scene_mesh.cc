@@ -39,24 +39,37 @@ Json VectorsJson(const std::vector<Vector>& vectors) {
   return json;
 }
 
+void ReadNumbers(const JsonCursor& list, const NumberRange& range, std::vector<float>* out) {
+  list.ForEachElement([&](const JsonCursor& element) {
+    double number = 0;
+    element.Read(range, &number);
+    out->push_back(static_cast<float>(number));
+  });
+}
+
 }  // namespace
 
 Mesh ReadMesh(const JsonCursor& value) {
   Mesh mesh;
   JsonObject object(value);
   ReadVectors(object.Required("positions"), kCoordinate, "[x, y, z]", &mesh.positions);
+  const auto check_count = [&](const JsonCursor& list, std::size_t count) {
+    if (!list.present() || count == mesh.positions.size()) return;
+    list.Fail(fmt::format("{} elements for {} positions", count, mesh.positions.size()));
+  };
   const auto of_vertices = [&](const char* key, const NumberRange& range, std::string_view expected,
                                auto* out) {
     const JsonCursor list = object.Optional(key);
-    if (!list.present()) return;
     ReadVectors(list, range, expected, out);
-    if (out->size() != mesh.positions.size()) {
-      list.Fail(fmt::format("{} elements for {} positions", out->size(), mesh.positions.size()));
-    }
+    check_count(list, out->size());
   };
   of_vertices("normals", kCoordinate, "[x, y, z]", &mesh.normals);
   of_vertices("uv", kCoordinate, "[u, v]", &mesh.uv);
+  of_vertices("uv2", kCoordinate, "[u, v]", &mesh.uv2);
   of_vertices("colours", kStrength, "[r, g, b]", &mesh.colours);
+  const JsonCursor alphas = object.Optional("alphas");
+  ReadNumbers(alphas, kFraction, &mesh.alphas);
+  check_count(alphas, mesh.alphas.size());
   const double last = static_cast<double>(mesh.positions.size()) - 1;
   const std::string text = fmt::format("an integer in [0, {}]", last);
   object.Required("triangles").ForEachElement([&](const JsonCursor& element) {
@@ -78,7 +91,9 @@ Json MeshJson(const Mesh& mesh) {
   Json json = {{"positions", VectorsJson(mesh.positions)}};
   if (!mesh.normals.empty()) json["normals"] = VectorsJson(mesh.normals);
   if (!mesh.uv.empty()) json["uv"] = VectorsJson(mesh.uv);
+  if (!mesh.uv2.empty()) json["uv2"] = VectorsJson(mesh.uv2);
   if (!mesh.colours.empty()) json["colours"] = VectorsJson(mesh.colours);
+  if (!mesh.alphas.empty()) json["alphas"] = mesh.alphas;
   json["triangles"] = mesh.triangles;
   return json;
 }

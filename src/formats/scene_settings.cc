@@ -11,7 +11,6 @@
 #include "src/core/match.h"
 #include "src/formats/other_images.h"
 #include "src/formats/printable.h"
-#include "src/formats/read_choice.h"
 #include "src/formats/read_file.h"
 #include "src/scene/srgb.h"
 
@@ -97,24 +96,17 @@ void ReadEnvironment(const JsonCursor& value, ColourSource* source,
   object.Finish();
 }
 
-const std::pair<std::string_view, Integrator> kNamedIntegrators[] = {
+const NamedChoice<Integrator> kNamedIntegrators[] = {
     {IntegratorName(Integrator::kWhitted), Integrator::kWhitted},
     {IntegratorName(Integrator::kDistributed), Integrator::kDistributed},
     {IntegratorName(Integrator::kPath), Integrator::kPath}};
-constexpr std::pair<std::string_view, PixelFilter> kPixelFilters[] = {
+constexpr NamedChoice<PixelFilter> kPixelFilters[] = {
     {"box", PixelFilter::kBox},
     {"gaussian", PixelFilter::kGaussian},
     {"blackman-harris", PixelFilter::kBlackmanHarris}};
-
-// Whether the second of two words stands there; an error where neither does.
-bool IsOther(const JsonCursor& value, const char* usual, const char* other) {
-  std::string word;
-  if (!value.ReadString(&word)) return false;
-  if (word != usual && word != other) {
-    value.Fail(fmt::format("expected \"{}\" or \"{}\"", usual, other));
-  }
-  return word == other;
-}
+constexpr NamedChoice<Tone> kTones[] = {{"linear", Tone::kLinear}, {"filmic", Tone::kFilmic}};
+constexpr NamedChoice<Shadows> kShadows[] = {{"through", Shadows::kThrough},
+                                             {"opaque", Shadows::kOpaque}};
 
 Json EnvironmentJson(const Environment& environment) {
   return Match(
@@ -176,10 +168,8 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
   } else {
     ev.Read(kStops, &*settings.ev);
   }
-  if (IsOther(object.Optional("tone"), "linear", "filmic")) settings.tone = Tone::kFilmic;
-  if (IsOther(object.Optional("shadows"), "through", "opaque")) {
-    settings.shadows = Shadows::kOpaque;
-  }
+  ReadChoice(object.Optional("tone"), kTones, &settings.tone);
+  ReadChoice(object.Optional("shadows"), kShadows, &settings.shadows);
   ReadChoice(object.Optional("integrator"), kNamedIntegrators, &settings.integrator);
   ReadChoice(object.Optional("pixel_filter"), kPixelFilters, &settings.filter);
   object.Finish();
@@ -197,8 +187,8 @@ Json SettingsJson(const Settings& settings) {
   if (settings.environment) json["environment"] = EnvironmentJson(*settings.environment);
   if (settings.ambient) json["ambient"] = VectorJson(*settings.ambient);
   if (settings.ev != 0.0) json["ev"] = settings.ev ? Json(*settings.ev) : Json("auto");
-  if (settings.tone == Tone::kFilmic) json["tone"] = "filmic";
-  if (settings.shadows == Shadows::kOpaque) json["shadows"] = "opaque";
+  if (settings.tone != Settings().tone) json["tone"] = NameOf(settings.tone, kTones);
+  if (settings.shadows != Settings().shadows) json["shadows"] = NameOf(settings.shadows, kShadows);
   if (settings.integrator != Integrator::kDistributed) {
     json["integrator"] = IntegratorName(settings.integrator);
   }

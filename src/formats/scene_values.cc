@@ -72,6 +72,21 @@ bool ReadDirection(const JsonCursor& value, Vec3d* out) {
 
 Json VectorJson(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+std::optional<std::size_t> ReadWord(const JsonCursor& value,
+                                    const std::vector<std::string_view>& words) {
+  std::string word;
+  if (!value.ReadString(&word)) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  std::string expected;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const char* const joint = i == 0 ? "" : i + 1 < words.size() ? ", " : " or ";
+    expected += fmt::format("{}\"{}\"", joint, words[i]);
+  }
+  value.Fail(fmt::format("expected {}{}", expected, DidYouMean(word, words)));
+  return std::nullopt;
+}
+
 bool HasControlCharacter(std::string_view name) {
   return std::any_of(name.begin(), name.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -2,12 +2,14 @@
 #ifndef SHEAF_FORMATS_SCENE_VALUES_H_
 #define SHEAF_FORMATS_SCENE_VALUES_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "sheaf/scene.h"
@@ -40,6 +42,30 @@ bool ReadDirection(const JsonCursor& value, Vec3d* out);
 
 using Json = nlohmann::ordered_json;
 Json VectorJson(const Vec3d& v);
+
+// A word of the file and what it stands for.
+template <typename Choice>
+using NamedChoice = std::pair<std::string_view, Choice>;
+
+// Which of the words stands there; nothing where none does, which is an error unless the value is
+// absent.
+std::optional<std::size_t> ReadWord(const JsonCursor& value,
+                                    const std::vector<std::string_view>& words);
+
+template <typename Choice, std::size_t count>
+void ReadChoice(const JsonCursor& value, const NamedChoice<Choice> (&choices)[count], Choice* out) {
+  std::vector<std::string_view> words;
+  for (const auto& [word, choice] : choices) words.push_back(word);
+  if (const auto which = ReadWord(value, words)) *out = choices[*which].second;
+}
+
+template <typename Choice, std::size_t count>
+std::string_view NameOf(Choice value, const NamedChoice<Choice> (&choices)[count]) {
+  for (const auto& [word, choice] : choices) {
+    if (choice == value) return word;
+  }
+  return "";
+}
 
 // Names end up in messages and file names: no control characters.
 bool HasControlCharacter(std::string_view name);

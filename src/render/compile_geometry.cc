@@ -2,6 +2,7 @@
 
 #include <array>
 #include <glm/common.hpp>
+#include <glm/ext/vector_float1.hpp>
 #include <map>
 #include <type_traits>
 #include <variant>
@@ -17,10 +18,12 @@ namespace {
 // Which attributes of vertices some material or mesh asks for.
 VertexAttributes AttributesOf(const Scene& scene) {
   VertexAttributes attributes;
+  bool asks_for_second_set = false;
   for (const Material& material : scene.materials) {
     attributes.has_coordinates |= std::holds_alternative<Checker>(material.base_colour);
-    ForEachTexture(material, [&](const char* /*name*/, const Texture& /*texture*/) {
+    ForEachTexture(material, [&](const char* /*name*/, const Texture& texture) {
       attributes.has_coordinates = true;
+      asks_for_second_set |= texture.set == 1;
     });
   }
   for (const Object& object : scene.objects) {
@@ -28,6 +31,8 @@ VertexAttributes AttributesOf(const Scene& scene) {
     if (mesh == nullptr) continue;
     attributes.has_normals |= !mesh->normals.empty();
     attributes.has_colours |= !mesh->colours.empty();
+    attributes.has_second_set |= asks_for_second_set && !mesh->uv2.empty();
+    attributes.has_alphas |= ShowsAlphas(*mesh, scene.materials[object.material]);
   }
   return attributes;
 }
@@ -68,8 +73,10 @@ class GeometryWriter {
     if (primitive.kind != PrimitiveKind::kTriangle) return;
     for (int vertex = 0; vertex < 3; ++vertex) {
       if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, primitive.uv[vertex]);
+      if (attributes_.has_second_set) Store(arrays_.uv2, vertex, i, primitive.uv[vertex]);
       if (attributes_.has_normals) Store(arrays_.normal, vertex, i, glm::vec3(0));
       if (attributes_.has_colours) Store(arrays_.colour, vertex, i, glm::vec3(1));
+      if (attributes_.has_alphas) Store(arrays_.alpha, vertex, i, glm::vec1(1));
     }
   }
 
@@ -84,10 +91,11 @@ class GeometryWriter {
       const std::uint32_t i = Put(PrimitiveKind::kTriangle, vertices);
       for (int vertex = 0; vertex < 3; ++vertex) {
         const std::uint32_t from = corners[static_cast<std::size_t>(vertex)];
-        if (attributes_.has_coordinates) {
-          Store(arrays_.uv, vertex, i,
-                mesh.uv.empty() ? glm::dvec2(Triangle{}.uv[static_cast<std::size_t>(vertex)])
-                                : glm::dvec2(mesh.uv[from]));
+        const glm::dvec2 uv = mesh.uv.empty() ? Triangle{}.uv[static_cast<std::size_t>(vertex)]
+                                              : glm::dvec2(mesh.uv[from]);
+        if (attributes_.has_coordinates) Store(arrays_.uv, vertex, i, uv);
+        if (attributes_.has_second_set) {
+          Store(arrays_.uv2, vertex, i, mesh.uv2.empty() ? uv : glm::dvec2(mesh.uv2[from]));
         }
         if (attributes_.has_normals) {
           Store(arrays_.normal, vertex, i,
@@ -96,6 +104,9 @@ class GeometryWriter {
         if (attributes_.has_colours) {
           Store(arrays_.colour, vertex, i,
                 mesh.colours.empty() ? glm::vec3(1) : mesh.colours[from]);
+        }
+        if (attributes_.has_alphas) {
+          Store(arrays_.alpha, vertex, i, glm::vec1(mesh.alphas.empty() ? 1 : mesh.alphas[from]));
         }
       }
     }

@@ -30,6 +30,11 @@ struct PointBounds {
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 };
 
+// Whether the alphas of the mesh's vertices show on the material.
+inline bool ShowsAlphas(const Mesh& mesh, const Material& material) {
+  return !mesh.alphas.empty() && material.alpha.mode != AlphaMode::kOpaque;
+}
+
 // Fills `to`, all but its tree. The scene has no more primitives of a kind than CheckCounts allows.
 template <typename Real>
 PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,

@@ -121,6 +121,8 @@ std::uint32_t CompileTexture(const Texture& texture, CompiledScene<Real>& compil
       WrapOf(texture.wrap_u),
       WrapOf(texture.wrap_v),
       texture.filter == Filter::kNearest ? TextureFilter::kNearest : TextureFilter::kLinear};
+  const bool has_second_set = compiled.geometry().triangles.uv2[0][0] != nullptr;
+  data.set = texture.set == 1 && has_second_set ? 1 : 0;
   StoreTransform(texture.transform, data);
   StoreLevels(texture, compiled, data);
   compiled.textures.push_back(data);
@@ -214,21 +216,25 @@ Colour MeanOf(const FloatImage& image) {
   return sum;
 }
 
-// What materials ask for besides their own data: their textures' levels, and the cones of rays that
+// What a texture asks of its material's surfaces besides the coordinates.
+template <typename Real>
+std::uint32_t NeedsOf(const TextureData<Real>& texture) {
+  return (texture.level_count > 1 ? kNeedsFootprint | kNeedsWidth : 0) |
+         (texture.set == 1 ? kNeedsSecondSet : 0);
+}
+
+// What materials ask for besides their own data: what their textures do, and the cones of rays that
 // may come to such materials.
 template <typename Real>
-void AddFootprintNeeds(CompiledScene<Real>& compiled) {
+void AddTextureNeeds(CompiledScene<Real>& compiled) {
   bool has_cones = false;
   for (MaterialData<Real>& material : compiled.materials) {
     const FinishData<Real>& finish = material.finish;
-    const auto has_levels = [&](std::uint32_t texture) {
-      return texture != kNoTexture && compiled.textures[texture].level_count > 1;
-    };
-    if ((material.kind == BaseColour::kTexture && has_levels(material.texture)) ||
-        has_levels(finish.emission) || has_levels(finish.metallic_roughness) ||
-        has_levels(finish.occlusion) || has_levels(finish.transmission) ||
-        has_levels(finish.normals)) {
-      material.needs |= kNeedsFootprint | kNeedsWidth;
+    const std::uint32_t base =
+        material.kind == BaseColour::kTexture ? material.texture : kNoTexture;
+    for (const std::uint32_t texture : {base, finish.emission, finish.metallic_roughness,
+                                        finish.occlusion, finish.transmission, finish.normals}) {
+      if (texture != kNoTexture) material.needs |= NeedsOf(compiled.textures[texture]);
     }
     has_cones = has_cones || (material.needs & kNeedsFootprint) != 0;
   }
@@ -294,13 +300,14 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     if (integrator == Integrator::kPath) FollowOneRay(data);
     compiled.materials.push_back(data);
   }
-  AddFootprintNeeds(compiled);
+  AddTextureNeeds(compiled);
   for (const Object& object : scene.objects) {
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (mesh == nullptr) continue;
     std::uint32_t& needs = compiled.materials[object.material].needs;
     if (!mesh->normals.empty()) needs |= kNeedsNormals;
     if (!mesh->colours.empty()) needs |= kNeedsTint;
+    if (ShowsAlphas(*mesh, scene.materials[object.material])) needs |= kNeedsVertexAlpha;
   }
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));

@@ -6,6 +6,32 @@
 
 namespace sheaf {
 
+namespace {
+
+// The step from surfaces to what their rays' cones cover. The second set of coordinates goes
+// through the same kernel in the place of the first.
+template <typename Real>
+void MeasureFootprints(const FrameView<Real>& frame, const Kernels<Real>& kernels,
+                       const HitBin& bin, const ConeView<Real>& cones, const HitView<Real>& hits,
+                       const SurfaceView<Real>& surfaces, SurfaceOutput<Real> footprints) {
+  const std::uint32_t needs = frame.materials[bin.material].needs;
+  kernels.find_footprints(frame.geometry, bin.kind, cones, hits, bin.batch, needs, surfaces,
+                          footprints);
+  constexpr std::uint32_t kBoth = kNeedsSecondSet | kNeedsFootprint;
+  if ((needs & kBoth) != kBoth || bin.kind != PrimitiveKind::kTriangle) return;
+  GeometryView<Real> second = frame.geometry;
+  for (int vertex = 0; vertex < 3; ++vertex) {
+    for (int axis = 0; axis < 2; ++axis) {
+      second.triangles.uv[vertex][axis] = second.triangles.uv2[vertex][axis];
+    }
+  }
+  footprints.footprint_u = footprints.footprint_u2;
+  footprints.footprint_v = footprints.footprint_v2;
+  kernels.find_footprints(second, bin.kind, cones, hits, bin.batch, needs, surfaces, footprints);
+}
+
+}  // namespace
+
 template <typename Real>
 SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels,
                                const HitBin& bin, const RayBatch<Real>& batch,
@@ -17,19 +43,19 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
   kernels.surfaces_of(bin.kind)(frame.geometry, batch.rays, hits, bin.batch, material.needs,
                                 output);
   if (bin.kind == PrimitiveKind::kTriangle) {
-    if (material.needs & (kNeedsNormals | kNeedsTint)) {
+    if (material.needs & (kNeedsNormals | kNeedsTint | kNeedsVertexAlpha | kNeedsSecondSet)) {
       kernels.blend_vertices(frame.geometry.triangles, hits, bin.batch, material.needs, output);
     }
     has_faces = (material.needs & kNeedsNormals) != 0;
   }
-  const auto view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
+  SurfaceView<Real> view = has_faces ? surfaces.view() : WithoutFaces(surfaces.view());
+  if (bin.kind != PrimitiveKind::kTriangle) view = WithOneSet(view);
   if (bin.kind == PrimitiveKind::kSphere && (material.needs & kNeedsCoordinates)) {
     PlaceOnSpheres(bin, view, output);
   }
   if (material.needs & kNeedsWidth) {
     const ConeView<Real> cones = {batch.paths.width, frame.cone.width, frame.cone.spread};
-    kernels.find_footprints(frame.geometry, bin.kind, cones, hits, bin.batch, material.needs, view,
-                            output);
+    MeasureFootprints(frame, kernels, bin, cones, hits, view, output);
   }
   if (material.needs & kNeedsTint) TintSurfaces(frame, kernels, bin, view, texels, output);
   if (has_faces && material.finish.normals != kNoTexture) {

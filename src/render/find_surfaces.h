@@ -32,12 +32,19 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
       bits(&Fields::facet_x, &Fields::facet_y, &Fields::facet_z, &Fields::gloss);
   const std::uint64_t choices = bits(&Fields::choice_reflect, &Fields::choice_refract,
                                      &Fields::choice_diffuse, &Fields::scatter);
-  return ~(coordinates | faces | curves | tints | terms | widths | footprints | facets | choices) |
+  const std::uint64_t alphas = FieldBit(&Fields::alpha);
+  const std::uint64_t second = bits(&Fields::u2, &Fields::v2);
+  const std::uint64_t second_footprints = bits(&Fields::footprint_u2, &Fields::footprint_v2);
+  const bool has_second = (needs & kNeedsSecondSet) != 0;
+  return ~(coordinates | faces | curves | tints | terms | widths | footprints | facets | choices |
+           alphas | second | second_footprints) |
          (needs & kNeedsCoordinates ? coordinates : 0) | (needs & kNeedsNormals ? faces : 0) |
          (NeedsCurves(needs) ? curves : 0) | (needs & kNeedsTint ? tints : 0) |
          (needs & kNeedsTerms ? terms : 0) | (needs & kNeedsWidth ? widths : 0) |
          (needs & kNeedsFootprint ? footprints : 0) | (needs & kNeedsGloss ? facets : 0) |
-         (needs & kNeedsChoice ? choices : 0);
+         (needs & kNeedsChoice ? choices : 0) | (needs & kNeedsVertexAlpha ? alphas : 0) |
+         (has_second ? second : 0) |
+         (has_second && (needs & kNeedsFootprint) ? second_footprints : 0);
 }
 
 // The fields of texels that these materials look up in so many textures, likewise.

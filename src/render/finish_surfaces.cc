@@ -25,12 +25,12 @@ void BumpSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels, co
                   const SurfaceView<Real>& surfaces, const TexelOutput<Real>& texels,
                   const SurfaceOutput<Real>& bumped) {
   const MaterialData<Real>& material = frame.materials[bin.material];
-  kernels.sample_texture(frame.textures[material.finish.normals], surfaces, bin.batch.count,
-                         {texels.r, texels.g, texels.b, nullptr});
+  const TextureData<Real>& map = frame.textures[material.finish.normals];
+  kernels.sample_texture(map, surfaces, bin.batch.count, {texels.r, texels.g, texels.b, nullptr});
   for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
     const Vec3<Real> colour = {texels.r[i], texels.g[i], texels.b[i]};
     const Vec3<Real> normal =
-        scalar::BumpedNormal(material, colour, frame.geometry.triangles, bin.batch.index[i],
+        scalar::BumpedNormal(material, map, colour, frame.geometry.triangles, bin.batch.index[i],
                              SurfaceIn(surfaces, i, material.needs));
     bumped.normal_x[i] = normal.x;
     bumped.normal_y[i] = normal.y;
@@ -59,6 +59,8 @@ void SampleTextures(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
   } else {
     std::fill_n(texels.alpha, bin.batch.count, Real(1));
   }
+  if (!(material.needs & kNeedsVertexAlpha) || bin.kind != PrimitiveKind::kTriangle) return;
+  for (std::uint32_t i = 0; i < bin.batch.count; ++i) texels.alpha[i] *= surfaces.alpha[i];
 }
 
 template <typename Real>

@@ -24,12 +24,12 @@ struct Texels {
   Real alpha;
 };
 
-// The alpha of the base colour's texture, or 1.
+// The alpha of the vertices, times that of the base colour's texture.
 template <typename Real>
-Real TexelAlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
-                  const Surface<Real>& surface) {
-  if (material.kind != BaseColour::kTexture) return 1;
-  return SampleAlpha(textures[material.texture], surface);
+Real AlphaAt(const MaterialData<Real>& material, std::span<const TextureData<Real>> textures,
+             const Surface<Real>& surface) {
+  if (material.kind != BaseColour::kTexture) return surface.alpha;
+  return SampleAlpha(textures[material.texture], surface) * surface.alpha;
 }
 
 template <typename Real>
@@ -41,8 +41,7 @@ Texels<Real> TexelsAt(const MaterialData<Real>& material,
     return SampleTexture(textures[texture], surface);
   };
   const Vec3<Real> gloss = sample(finish.metallic_roughness);
-  const Real alpha =
-      finish.alpha == AlphaUse::kOpaque ? 1 : TexelAlphaAt(material, textures, surface);
+  const Real alpha = finish.alpha == AlphaUse::kOpaque ? 1 : AlphaAt(material, textures, surface);
   return {gloss.z,
           gloss.y,
           sample(finish.occlusion).x,
@@ -51,7 +50,7 @@ Texels<Real> TexelsAt(const MaterialData<Real>& material,
           alpha};
 }
 
-// How much of the surface is there, in [0, 1], where its texture's alpha is `alpha`.
+// How much of the surface is there, in [0, 1], where AlphaAt is `alpha`.
 template <typename Real>
 Real ShareThere(const FinishData<Real>& finish, Real alpha) {
   const Real scaled = finish.alpha_factor * alpha;
@@ -73,7 +72,7 @@ Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureD
     passes = passes * SampleTexture(textures[finish.transmission], surface).x;
   }
   if (finish.alpha == AlphaUse::kOpaque) return passes;
-  const Real alpha = ShareThere(finish, TexelAlphaAt(material, textures, surface));
+  const Real alpha = ShareThere(finish, AlphaAt(material, textures, surface));
   const Real gap = 1 - alpha;
   return passes * alpha + Vec3<Real>{gap, gap, gap};
 }
@@ -133,17 +132,18 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<R
 }
 
 // The shading normal that a normal map, whose colour here is `colour`, makes of the surface's, on
-// triangle `i`. Its tangents are those of the triangle's surface coordinates, at right angles to
-// the shading normal; a triangle without coordinates, or whose normal would turn to the face's
-// other side, keeps its normal.
+// triangle `i`. `map` is the material's. Its tangents are those of the triangle's surface
+// coordinates, at right angles to the shading normal; a triangle without coordinates, or whose
+// normal would turn to the face's other side, keeps its normal.
 template <typename Real>
-Vec3<Real> BumpedNormal(const MaterialData<Real>& material, Vec3<Real> colour,
-                        const TriangleArrays<Real>& triangles, std::uint32_t i,
+Vec3<Real> BumpedNormal(const MaterialData<Real>& material, const TextureData<Real>& map,
+                        Vec3<Real> colour, const TriangleArrays<Real>& triangles, std::uint32_t i,
                         const Surface<Real>& surface) {
   using W = Wide<Real>;
-  if (!triangles.uv[0][0]) return surface.normal;
+  const auto& coordinates = map.set == 1 ? triangles.uv2 : triangles.uv;
+  if (!coordinates[0][0]) return surface.normal;
   const auto vertex = [&](int k) { return VertexValue(triangles.vertex, k, i); };
-  const auto uv = [&](int k, int axis) { return static_cast<W>(triangles.uv[k][axis][i]); };
+  const auto uv = [&](int k, int axis) { return static_cast<W>(coordinates[k][axis][i]); };
   const Vec3<W> e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
   const W du1 = uv(1, 0) - uv(0, 0), dv1 = uv(1, 1) - uv(0, 1);
   const W du2 = uv(2, 0) - uv(0, 0), dv2 = uv(2, 1) - uv(0, 1);

@@ -27,16 +27,18 @@ struct CoordinateSlopes {
   Real facing;
 };
 
+// By a set of its coordinates.
 template <typename Real>
-CoordinateSlopes<Real> SlopesOnTriangle(const TriangleArrays<Real>& triangles, std::uint32_t i,
+CoordinateSlopes<Real> SlopesOnTriangle(const TriangleArrays<Real>& triangles,
+                                        const Real* const (&uv)[3][2], std::uint32_t i,
                                         Vec3<Real> direction) {
   const auto vertex = [&](int k) -> Vec3<Real> {
     return {triangles.vertex[k][0][i], triangles.vertex[k][1][i], triangles.vertex[k][2][i]};
   };
   const Vec3<Real> e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
   const auto slope = [&](int axis) {
-    const Real first = triangles.uv[0][axis][i];
-    return e2 * (triangles.uv[1][axis][i] - first) - e1 * (triangles.uv[2][axis][i] - first);
+    const Real first = uv[0][axis][i];
+    return e2 * (uv[1][axis][i] - first) - e1 * (uv[2][axis][i] - first);
   };
   return {slope(0), slope(1), Dot(Cross(e1, e2), direction)};
 }
@@ -73,7 +75,7 @@ CoordinateSlopes<Real> SlopesAt(const GeometryView<Real>& geometry, std::uint32_
   const std::uint32_t i = IndexIn(place);
   switch (KindOf(place)) {
     case PrimitiveKind::kTriangle:
-      return SlopesOnTriangle(geometry.triangles, i, surface.direction);
+      return SlopesOnTriangle(geometry.triangles, geometry.triangles.uv, i, surface.direction);
     case PrimitiveKind::kSphere:
       return SlopesOnSphere(geometry.spheres.radius[i], surface.face, surface.direction);
     case PrimitiveKind::kDisk:
@@ -84,15 +86,27 @@ CoordinateSlopes<Real> SlopesAt(const GeometryView<Real>& geometry, std::uint32_
 }
 
 // Sets the width of the cone of a ray that starts `start` wide and hits at `t`, and what the cone
-// covers of the surface's coordinates.
+// covers of the surface's coordinates, of both sets.
 template <typename Real>
 void MeasureFootprint(const GeometryView<Real>& geometry, std::uint32_t place, Real start,
                       Real spread, Real t, Surface<Real>& surface) {
   surface.width = start + spread * t;
-  if (KindOf(place) == PrimitiveKind::kTriangle && !geometry.triangles.uv[0][0]) return;
+  const TriangleArrays<Real>& triangles = geometry.triangles;
+  const bool is_triangle = KindOf(place) == PrimitiveKind::kTriangle;
+  if (is_triangle && !triangles.uv[0][0]) return;
+  const auto extent = [&](Vec3<Real> slope, Real facing) {
+    return ExtentAlong(slope, facing, surface.direction, surface.width);
+  };
   const CoordinateSlopes<Real> slopes = SlopesAt(geometry, place, surface);
-  surface.footprint_u = ExtentAlong(slopes.u, slopes.facing, surface.direction, surface.width);
-  surface.footprint_v = ExtentAlong(slopes.v, slopes.facing, surface.direction, surface.width);
+  surface.footprint_u = extent(slopes.u, slopes.facing);
+  surface.footprint_v = extent(slopes.v, slopes.facing);
+  surface.footprint_u2 = surface.footprint_u;
+  surface.footprint_v2 = surface.footprint_v;
+  if (!is_triangle || !triangles.uv2[0][0]) return;
+  const CoordinateSlopes<Real> second =
+      SlopesOnTriangle(triangles, triangles.uv2, IndexIn(place), surface.direction);
+  surface.footprint_u2 = extent(second.u, second.facing);
+  surface.footprint_v2 = extent(second.v, second.facing);
 }
 
 }  // namespace sheaf::scalar

@@ -24,6 +24,7 @@ Surface<Real> SurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& 
   Surface<Real> surface = SurfaceAt(ray, hit, frame.geometry, primitive.place);
   const bool has_coordinates = (material.needs & kNeedsCoordinates) != 0;
   if (has_coordinates && primitive.kind() == PrimitiveKind::kSphere) PlaceOnSphere(surface);
+  if (primitive.kind() != PrimitiveKind::kTriangle) surface.u2 = surface.u, surface.v2 = surface.v;
   return surface;
 }
 

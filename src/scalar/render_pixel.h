@@ -115,9 +115,9 @@ Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Rea
                      surface);
   }
   if (material.finish.normals != kNoTexture && primitive.kind() == PrimitiveKind::kTriangle) {
-    surface.normal =
-        BumpedNormal(material, SampleTexture(frame.textures[material.finish.normals], surface),
-                     frame.geometry.triangles, primitive.index(), surface);
+    const TextureData<Real>& map = frame.textures[material.finish.normals];
+    surface.normal = BumpedNormal(material, map, SampleTexture(map, surface),
+                                  frame.geometry.triangles, primitive.index(), surface);
   }
   return surface;
 }

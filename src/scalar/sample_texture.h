@@ -58,8 +58,10 @@ struct ImagePlace {
 
 template <typename Real>
 ImagePlace<Real> PlaceOnImage(const TextureData<Real>& texture, const Surface<Real>& surface) {
-  const Real u = surface.u, v = surface.v;
-  const Real width_u = surface.footprint_u, width_v = surface.footprint_v;
+  const bool is_second = texture.set == 1;
+  const Real u = is_second ? surface.u2 : surface.u, v = is_second ? surface.v2 : surface.v;
+  const Real width_u = is_second ? surface.footprint_u2 : surface.footprint_u;
+  const Real width_v = is_second ? surface.footprint_v2 : surface.footprint_v;
   if (!texture.is_moved) return {u, v, width_u, width_v};
   const auto moved = [&](const Real(&to)[3]) { return (to[0] * u + to[1] * v) + to[2]; };
   const auto widened = [&](const Real(&to)[3]) {

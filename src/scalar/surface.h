@@ -24,11 +24,14 @@ struct Surface {
   Vec3<Real> shadow_end;
   Real bend = 0;  // how far below the face a light may lie, as a cosine; 0 where it is flat
   Real u = 0, v = 0;
+  Real u2 = 0, v2 = 0;          // of the second set of coordinates
   Vec3<Real> tint = {1, 1, 1};  // of the vertices' colours
+  Real alpha = 1;               // of the vertices
   Real offset;
   std::uint32_t source;
   Real width = 0;                         // of the ray's cone there
   Real footprint_u = 0, footprint_v = 0;  // how much of u and v the cone covers
+  Real footprint_u2 = 0, footprint_v2 = 0;
   // Of a rough surface: the normal that rays are mirrored and bent at, and what their throughputs
   // are multiplied with besides.
   Vec3<Real> facet = {0, 0, 0};

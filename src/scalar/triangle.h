@@ -297,13 +297,22 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
     surface.tint =
         ((first + (colour(1) - first) * w1) + (colour(2) - first) * w2).template To<Real>();
   }
+  if (triangles.alpha[0][0]) {
+    const auto alpha = [&](int vertex) { return static_cast<W>(triangles.alpha[vertex][0][i]); };
+    const W first = alpha(0);
+    surface.alpha = static_cast<Real>((first + (alpha(1) - first) * w1) + (alpha(2) - first) * w2);
+  }
+  const auto coordinate = [&](const Real* const(&uv)[3][2], int axis) {
+    const auto at = [&](int vertex) { return static_cast<W>(uv[vertex][axis][i]); };
+    return static_cast<Real>((at(0) * w0 + at(1) * w1) + at(2) * w2);
+  };
   if (triangles.uv[0][0]) {
-    const auto coordinate = [&](int axis) {
-      const auto uv = [&](int vertex) { return static_cast<W>(triangles.uv[vertex][axis][i]); };
-      return static_cast<Real>((uv(0) * w0 + uv(1) * w1) + uv(2) * w2);
-    };
-    surface.u = coordinate(0);
-    surface.v = coordinate(1);
+    surface.u = coordinate(triangles.uv, 0);
+    surface.v = coordinate(triangles.uv, 1);
+  }
+  if (triangles.uv2[0][0]) {
+    surface.u2 = coordinate(triangles.uv2, 0);
+    surface.v2 = coordinate(triangles.uv2, 1);
   }
   // What is wide errs by roundoffs of its terms; a neighbour's plane has vertices as large as
   // these.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -70,17 +71,21 @@ class FirstFault {
     if (index >= count) Fail(fmt::format("{} {} of {}", kind, index, count));
   }
   // One value a vertex, or none.
-  template <typename Vector>
-  void PerVertex(std::string_view name, const std::vector<Vector>& values, const Range& range,
+  template <typename Value>
+  void PerVertex(std::string_view name, const std::vector<Value>& values, const Range& range,
                  std::size_t vertices) {
     if (!values.empty() && values.size() != vertices) {
       Fail(fmt::format("{} {} for {} vertices", values.size(), name, vertices));
     }
     for (std::size_t i = 0; i < values.size() && !found(); ++i) {
-      for (int k = 0; k < Vector::length(); ++k) {
-        if (range.Has(static_cast<double>(values[i][k]))) continue;
-        Number(fmt::format("vertex {}: one of the {}", i, name), static_cast<double>(values[i][k]),
-               range);
+      const auto check = [&](double number) {
+        if (range.Has(number)) return;
+        Number(fmt::format("vertex {}: one of the {}", i, name), number, range);
+      };
+      if constexpr (std::is_arithmetic_v<Value>) {
+        check(static_cast<double>(values[i]));
+      } else {
+        for (int k = 0; k < Value::length(); ++k) check(static_cast<double>(values[i][k]));
       }
     }
   }
@@ -109,6 +114,7 @@ void CheckTexture(const std::string& name, const Texture& texture, FirstFault& f
   fault.Components(name + ".transform.offset", texture.transform.offset, kAny);
   fault.Components(name + ".transform.scale", texture.transform.scale, kAny);
   fault.Number(name + ".transform.rotation", texture.transform.rotation, kTurn);
+  fault.Number(name + ".set", texture.set, {0, 1, "0 or 1"});
   if (!texture.image) return fault.Fail(name + ".image is null");
   CheckSides(name + ".image", *texture.image, texture.image->texels.size(), fault);
 }
@@ -153,7 +159,9 @@ void CheckMesh(const Mesh& mesh, FirstFault& fault) {
   fault.PerVertex("positions", mesh.positions, kVertexPlace, vertices);
   fault.PerVertex("normals", mesh.normals, kAny, vertices);
   fault.PerVertex("uv", mesh.uv, kAny, vertices);
+  fault.PerVertex("uv2", mesh.uv2, kAny, vertices);
   fault.PerVertex("colours", mesh.colours, kAtLeastZero, vertices);
+  fault.PerVertex("alphas", mesh.alphas, kShare, vertices);
   for (std::size_t i = 0; i < mesh.triangles.size() && !fault.found(); ++i) {
     for (const std::uint32_t corner : mesh.triangles[i]) {
       if (corner >= vertices) fault.Index(fmt::format("triangle {}: vertex", i), corner, vertices);

@@ -75,6 +75,7 @@ struct Texture {
   Filter filter = Filter::kMip;
   Colour factor{1.0};
   TextureTransform transform = {};
+  int set = 0;  // of coordinates: 0, or 1 for a mesh's `uv2`
 };
 
 // How metallic and how rough a surface is, point by point: the texture's blue times `metallic` and
@@ -115,7 +116,8 @@ enum class AlphaMode { kOpaque, kMask, kBlend };
 
 struct Alpha {
   AlphaMode mode = AlphaMode::kOpaque;
-  double factor = 1.0;  // [0, 1]: alpha, times that of the texture of the base colour
+  // [0, 1]: alpha, times that of the texture of the base colour and that of a mesh's vertices.
+  double factor = 1.0;
   double cutoff = 0.5;  // [0, 1]
 };
 
@@ -179,7 +181,9 @@ struct Mesh {
   // Each empty, or one a vertex.
   std::vector<glm::vec3> normals;  // for shading, of any length; 0: the face's own
   std::vector<glm::vec2> uv;
+  std::vector<glm::vec2> uv2;  // for textures of set 1; empty: they lie by `uv`, as on other shapes
   std::vector<glm::vec3> colours;                       // linear, times the base colour
+  std::vector<float> alphas;                            // [0, 1], where the material has an alpha
   std::vector<std::array<std::uint32_t, 3>> triangles;  // vertices, below positions.size()
 };
 
