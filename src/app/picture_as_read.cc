@@ -1,18 +1,8 @@
 #include "src/app/picture_as_read.h"
 
 #include "src/formats/picture.h"
-#include "src/scene/srgb.h"
 
 namespace sheaf {
-
-void DecodeLight(ReadPictureResult& picture) {
-  if (picture.is_display && picture.is_srgb) {
-    for (float& value : picture.film.rgb) {
-      value = static_cast<float>(SrgbDecode(static_cast<double>(value)));
-    }
-  }
-  picture.is_display = false;
-}
 
 PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,
                        std::optional<int> bits) {

@@ -9,9 +9,6 @@
 
 namespace sheaf {
 
-// Display values become light, where the file says how they are encoded.
-void DecodeLight(ReadPictureResult& picture);
-
 // The spec of the picture, not yet decoded, in a file of `named`: its place and metadata, and as
 // many bits a channel as it had where both hold bytes or both floats. `bits` are those of --bits.
 PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,

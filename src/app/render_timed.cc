@@ -10,7 +10,7 @@ namespace sheaf {
 namespace {
 
 // A highlight far above white would outweigh every visible error.
-Film Shown(Film film) {
+Film PictureOf(Film film) {
   for (float& value : film.rgb) value = value > 0 ? std::min(value, 1.0f) : 0.0f;
   return film;
 }
@@ -25,7 +25,7 @@ Result<TimedFrame> RenderTimed(const Scene& scene, const Camera& camera,
   if (!film) return film.error();
   // The watch wakes ten times a second; a frame may be shorter.
   if (const Status going = CheckInterrupted(); !going) return going.error();
-  return TimedFrame{Shown(std::move(film).value()), stats.wall_seconds};
+  return TimedFrame{PictureOf(std::move(film).value()), stats.wall_seconds};
 }
 
 }  // namespace sheaf
