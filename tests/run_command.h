@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+// Before kScene, which enumerators of these headers would shadow.
+#include "sheaf/formats.h"
+
 namespace sheaf {
 
 inline const std::string kScene = SHEAF_SOURCE_DIR "/scenes/crystal-ball.json";

@@ -11,6 +11,7 @@
 #include "sheet_scene.h"
 #include "src/formats/png.h"
 #include "src/formats/write_scene_json.h"
+#include "src/scalar/surface.h"
 #include "targets.h"
 #include "test_frames.h"
 
