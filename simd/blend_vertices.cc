@@ -60,6 +60,54 @@ HWY_INLINE void StoreCurve(const TriangleArrays<Real>& triangles, const Fetch& f
   hn::StoreU(Narrow<Real>(hn::IfThenElseZero(is_smooth, hn::Sqrt(square))), dn, surfaces.bend + i);
 }
 
+// The mean of what the vertices have at `axis`.
+template <class W, class Values, class Fetch>
+HWY_INLINE W MeanOf(const Values& values, int axis, const Fetch& fetch, const W (&weights)[3]) {
+  return hn::Add(hn::Add(hn::Mul(fetch(values[0][axis]), weights[0]),
+                         hn::Mul(fetch(values[1][axis]), weights[1])),
+                 hn::Mul(fetch(values[2][axis]), weights[2]));
+}
+
+// Keeps the faces' normals at `i` and puts the shading normals in their place.
+template <typename Real, class Fetch, class W = hn::Vec<WideLanes<Real>>>
+HWY_INLINE void BlendNormals(const TriangleArrays<Real>& triangles, const Fetch& fetch,
+                             const W (&weights)[3], std::uint32_t needs,
+                             const SurfaceOutput<Real>& surfaces, std::uint32_t i) {
+  const WideLanes<Real> dw;
+  const NarrowLanes<Real> dn;
+  const bool has_normals = triangles.normal[0][0] != nullptr;
+  const auto face_x = hn::LoadU(dn, surfaces.normal_x + i);
+  const auto face_y = hn::LoadU(dn, surfaces.normal_y + i);
+  const auto face_z = hn::LoadU(dn, surfaces.normal_z + i);
+  hn::StoreU(face_x, dn, surfaces.face_x + i);
+  hn::StoreU(face_y, dn, surfaces.face_y + i);
+  hn::StoreU(face_z, dn, surfaces.face_z + i);
+  if (!has_normals && NeedsCurves(needs)) {
+    hn::StoreU(hn::LoadU(dn, surfaces.position_x + i), dn, surfaces.shadow_x + i);
+    hn::StoreU(hn::LoadU(dn, surfaces.position_y + i), dn, surfaces.shadow_y + i);
+    hn::StoreU(hn::LoadU(dn, surfaces.position_z + i), dn, surfaces.shadow_z + i);
+    hn::StoreU(hn::Zero(dn), dn, surfaces.bend + i);
+  }
+  if (has_normals) {
+    W x = MeanOf<W>(triangles.normal, 0, fetch, weights),
+      y = MeanOf<W>(triangles.normal, 1, fetch, weights),
+      z = MeanOf<W>(triangles.normal, 2, fetch, weights);
+    // False for NaN too: lanes past the count may hold anything.
+    const auto is_smooth = hn::Gt(Dot(dw, x, y, z, x, y, z), hn::Zero(dw));
+    NormalizeWide(dw, x, y, z);
+    const auto turn =
+        hn::Lt(Dot(dw, x, y, z, Widen(face_x), Widen(face_y), Widen(face_z)), hn::Zero(dw));
+    const auto store = [&](W n, decltype(face_x) face, Real* HWY_RESTRICT to) HWY_ATTR {
+      const W normal = hn::IfThenElse(turn, hn::Neg(n), n);
+      hn::StoreU(Narrow<Real>(hn::IfThenElse(is_smooth, normal, Widen(face))), dn, to + i);
+    };
+    store(x, face_x, surfaces.normal_x);
+    store(y, face_y, surfaces.normal_y);
+    store(z, face_z, surfaces.normal_z);
+    if (NeedsCurves(needs)) StoreCurve<Real>(triangles, fetch, weights, is_smooth, surfaces, i);
+  }
+}
+
 template <typename Real>
 void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Real>& hits,
                         const HitBatch& batch, std::uint32_t needs,
@@ -69,7 +117,6 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
   const IdLanes<NarrowLanes<Real>> di;
   using W = hn::Vec<WideLanes<Real>>;
   using Wide = hn::TFromD<WideLanes<Real>>;
-  const bool has_normals = triangles.normal[0][0] != nullptr;
   const bool has_colours = triangles.colour[0][0] != nullptr;
   for (std::uint32_t i = 0; i < batch.count; i += LaneCount(dn)) {
     // Lanes past the count gather element 0.
@@ -87,42 +134,8 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
     };
     const W w1 = of_ray(hits.u), w2 = of_ray(hits.v);
     const W w0 = hn::Sub(hn::Sub(hn::Set(dw, Wide(1)), w1), w2);
-    const auto mean = [&](const auto& values, int axis) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Mul(of_primitive(values[0][axis]), w0),
-                             hn::Mul(of_primitive(values[1][axis]), w1)),
-                     hn::Mul(of_primitive(values[2][axis]), w2));
-    };
     if (needs & kNeedsNormals) {
-      const auto face_x = hn::LoadU(dn, surfaces.normal_x + i);
-      const auto face_y = hn::LoadU(dn, surfaces.normal_y + i);
-      const auto face_z = hn::LoadU(dn, surfaces.normal_z + i);
-      hn::StoreU(face_x, dn, surfaces.face_x + i);
-      hn::StoreU(face_y, dn, surfaces.face_y + i);
-      hn::StoreU(face_z, dn, surfaces.face_z + i);
-      if (!has_normals && NeedsCurves(needs)) {
-        hn::StoreU(hn::LoadU(dn, surfaces.position_x + i), dn, surfaces.shadow_x + i);
-        hn::StoreU(hn::LoadU(dn, surfaces.position_y + i), dn, surfaces.shadow_y + i);
-        hn::StoreU(hn::LoadU(dn, surfaces.position_z + i), dn, surfaces.shadow_z + i);
-        hn::StoreU(hn::Zero(dn), dn, surfaces.bend + i);
-      }
-      if (has_normals) {
-        W x = mean(triangles.normal, 0), y = mean(triangles.normal, 1),
-          z = mean(triangles.normal, 2);
-        // False for NaN too: lanes past the count may hold anything.
-        const auto is_smooth = hn::Gt(Dot(dw, x, y, z, x, y, z), hn::Zero(dw));
-        NormalizeWide(dw, x, y, z);
-        const auto turn =
-            hn::Lt(Dot(dw, x, y, z, Widen(face_x), Widen(face_y), Widen(face_z)), hn::Zero(dw));
-        const auto store = [&](W n, decltype(face_x) face, Real* HWY_RESTRICT to) HWY_ATTR {
-          const W normal = hn::IfThenElse(turn, hn::Neg(n), n);
-          hn::StoreU(Narrow<Real>(hn::IfThenElse(is_smooth, normal, Widen(face))), dn, to + i);
-        };
-        store(x, face_x, surfaces.normal_x);
-        store(y, face_y, surfaces.normal_y);
-        store(z, face_z, surfaces.normal_z);
-        if (NeedsCurves(needs))
-          StoreCurve<Real>(triangles, of_primitive, {w0, w1, w2}, is_smooth, surfaces, i);
-      }
+      BlendNormals<Real>(triangles, of_primitive, {w0, w1, w2}, needs, surfaces, i);
     }
     const auto blend = [&](const Real* at0, const Real* at1, const Real* at2) HWY_ATTR {
       const W first = of_primitive(at0);
@@ -141,12 +154,17 @@ void BlendVerticesLanes(const TriangleArrays<Real>& triangles, const HitView<Rea
       hn::StoreU(tint(2), dn, surfaces.tint_b + i);
     }
     if (needs & kNeedsVertexAlpha) {
-      const auto& alpha = triangles.alpha;
-      hn::StoreU(blend(alpha[0][0], alpha[1][0], alpha[2][0]), dn, surfaces.alpha + i);
+      const auto zero = hn::Zero(dn), one = hn::Set(dn, Real(1));
+      const auto& of = triangles.alpha;
+      const auto alpha = blend(of[0][0], of[1][0], of[2][0]);
+      const auto at_most_one = hn::IfThenElse(hn::Lt(alpha, one), alpha, one);
+      hn::StoreU(hn::IfThenElse(hn::Gt(alpha, zero), at_most_one, zero), dn, surfaces.alpha + i);
     }
     if (needs & kNeedsSecondSet) {
-      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 0)), dn, surfaces.u2 + i);
-      hn::StoreU(Narrow<Real>(mean(triangles.uv2, 1)), dn, surfaces.v2 + i);
+      hn::StoreU(Narrow<Real>(MeanOf<W>(triangles.uv2, 0, of_primitive, {w0, w1, w2})), dn,
+                 surfaces.u2 + i);
+      hn::StoreU(Narrow<Real>(MeanOf<W>(triangles.uv2, 1, of_primitive, {w0, w1, w2})), dn,
+                 surfaces.v2 + i);
     }
   }
 }

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "bits.h"
 #include "model_files.h"
 #include "same_bits.h"
 #include "sheet_scene.h"
 #include "src/formats/png.h"
 #include "src/formats/write_scene_json.h"
 #include "src/scalar/surface.h"
+#include "src/scalar/triangle.h"
 #include "targets.h"
 #include "test_frames.h"
 

@@ -300,7 +300,10 @@ Surface<Real> TriangleSurface(const Ray<Real>& ray, const Hit<Real>& hit,
   if (triangles.alpha[0][0]) {
     const auto alpha = [&](int vertex) { return static_cast<W>(triangles.alpha[vertex][0][i]); };
     const W first = alpha(0);
-    surface.alpha = static_cast<Real>((first + (alpha(1) - first) * w1) + (alpha(2) - first) * w2);
+    const auto mixed =
+        static_cast<Real>((first + (alpha(1) - first) * w1) + (alpha(2) - first) * w2);
+    // Rounding can carry it past 0 and 1.
+    surface.alpha = mixed > 0 ? (mixed < 1 ? mixed : Real(1)) : Real(0);
   }
   const auto coordinate = [&](const Real* const(&uv)[3][2], int axis) {
     const auto at = [&](int vertex) { return static_cast<W>(uv[vertex][axis][i]); };
