@@ -145,10 +145,6 @@ RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSi
   return options;
 }
 
-PixelRect AreaOf(const RenderOptions& options) {
-  return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
-}
-
 RenderOptions SmallPicture(const RenderOptions& options, int side) {
   RenderOptions small = options;
   const int longer = std::max({options.width, options.height, side});

@@ -42,9 +42,6 @@ Result<std::optional<DenoiseFilter>> ChooseDenoiseFilter(const std::string& name
 RenderOptions FrameOptions(const Settings& settings, const std::optional<PixelSize>& size,
                            const std::optional<int>& samples);
 
-// The pixels that a frame has: its crop, or all.
-PixelRect AreaOf(const RenderOptions& options);
-
 // The options for a picture of the same proportions, at most `side` pixels each way, with one
 // sample a pixel.
 RenderOptions SmallPicture(const RenderOptions& options, int side);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "src/app/choose.h"
+#include "src/render/check_options.h"
 
 namespace sheaf {
 namespace {

@@ -12,6 +12,7 @@
 #include "src/core/checksum.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
+#include "src/render/check_options.h"
 #include "src/view/heat_picture.h"
 
 namespace sheaf {

@@ -128,7 +128,7 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
     }
     return std::make_unique<TileRenderer<Real>>(frame, options, progress.stop);
   };
-  const PixelRect area = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+  const PixelRect area = AreaOf(options);
   return RenderBands(area, options, make_worker, sink, stats, progress);
 }
 

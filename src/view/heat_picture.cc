@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "src/app/choose.h"
 #include "src/formats/picture.h"
+#include "src/render/check_options.h"
 
 namespace sheaf {
 
