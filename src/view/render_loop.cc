@@ -187,9 +187,10 @@ void RenderLoop::RunJob(const FrameJob& job, std::unique_lock<std::mutex>& lock)
     return;
   }
   error_.clear();
-  double fixed = 0;
-  for (const SideStats& side : picture.sides) fixed += side.compile_seconds;
-  plan_.Finish(job, seconds + idle, fixed + idle);
+  // All but the pixels: the tree, and checks of the scene before it.
+  double fixed = seconds;
+  for (const SideStats& side : picture.sides) fixed -= side.seconds;
+  plan_.Finish(job, seconds + idle, std::max(fixed, 0.0) + idle);
   picture.is_whole = true;
   picture.is_finished = plan_.is_finished() && !pending_;
   picture.seconds = seconds;
