@@ -74,8 +74,8 @@ void FramePlan::Finish(const FrameJob& job, double seconds, double fixed) {
   const double pixels = static_cast<double>(job.width) * job.height;
   const double measured = std::max(seconds - fixed, 1e-9) / pixels;
   // Half of the old: one frame that another process delayed does not count for much.
+  fixed_ = seconds_a_pixel_ ? 0.5 * (fixed_ + fixed) : fixed;
   seconds_a_pixel_ = seconds_a_pixel_ ? 0.5 * (*seconds_a_pixel_ + measured) : measured;
-  fixed_ = fixed;
   ChooseRung();
 }
 

@@ -73,6 +73,7 @@ class RenderLoop {
   FramePlan plan_;
   std::optional<FrameJob> job_;  // that is being rendered
   double job_start_ = 0;
+  double draft_end_ = -1;    // of the last draft
   bool has_failed_ = false;  // the request, so that it is not tried again
   std::shared_ptr<RenderProgress> progress_;
   std::uint64_t published_ = 0;
