@@ -100,8 +100,8 @@ bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   if (calls_kernels) return header == "simd/kernels.h";
   return layer == "src/scalar" &&
          (header == "simd/pow_terms.h" || header == "simd/sample_terms.h" ||
-          header == "simd/sin_cos_terms.h" || header == "simd/checker_terms.h" ||
-          header == "simd/roundoffs.h");
+          header == "simd/noisy_planes.h" || header == "simd/sin_cos_terms.h" ||
+          header == "simd/checker_terms.h" || header == "simd/roundoffs.h");
 }
 
 // Whether Highway is reached from `path` through headers of the tree.

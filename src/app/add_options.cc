@@ -141,7 +141,9 @@ void AddCameraChoice(CLI::App& app, CameraChoice& choice) {
       ->excludes("--camera");
 }
 
-void AddFooter(CLI::App& app, const std::string& text) { app.footer(text); }
+void AddFooter(CLI::App& app, const std::string& text) {
+  app.footer(text + "\n" + app.get_footer());
+}
 
 std::string GivenText(const CLI::App& app, const std::set<std::string>& except) {
   std::string text;

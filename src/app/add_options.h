@@ -97,7 +97,7 @@ void AddDenoiseFilter(CLI::App& app, const char* name, std::string& filter,
 // --camera and --views.
 void AddCameraChoice(CLI::App& app, CameraChoice& choice);
 
-// What the help of the subcommand ends with.
+// What the help of the subcommand says before its examples.
 void AddFooter(CLI::App& app, const std::string& text);
 
 // The options and inputs that the parsed command line has, with their values, but for those that
