@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "noisy_film.h"
-#include "run_command.h"
 #include "sheaf/formats.h"
 #include "sheaf/render.h"
 #include "src/formats/pfm.h"
 #include "src/lab/picture_metrics.h"
+#include "tests/noisy_film.h"
+#include "tests/run_command.h"
 
 namespace sheaf {
 namespace {
@@ -149,11 +149,12 @@ TEST_CASE("render --denoise: the film of render, denoised, whatever the crop") {
                                                  "raw.normal.pfm", "raw.pfm", "whole.pfm"});
 
   // Wide enough that the crop does not see all of it.
-  const std::vector<std::string> big = {"--size", "160x120", "--denoise", "-q", "-o"};
+  const std::vector<std::string> big = {"render",    kScene, "--size", "160x120",
+                                        "--denoise", "-q",   "-o"};
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.begin(), big.begin(), big.end());
     more.insert(more.begin() + static_cast<std::ptrdiff_t>(big.size()), work / name);
-    CHECK(work.Render(more).code == 0);
+    CHECK(work.Run(more).code == 0);
     return ReadOrFail(work / name);
   };
   const Film whole = render("big.pfm", {}), crop = render("crop.pfm", {"--crop", "60,50,90,75"});
