@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "noisy_film.h"
-#include "run_command.h"
 #include "sheaf/formats.h"
 #include "sheaf/render.h"
 #include "src/formats/pfm.h"
 #include "src/lab/picture_metrics.h"
+#include "tests/noisy_film.h"
+#include "tests/run_command.h"
 
 namespace sheaf {
 namespace {

@@ -100,6 +100,11 @@ void AddBits(CLI::App& app, std::optional<int>& bits) {
   AddInteger(app, "--bits", bits, 8, 32, ("Of a channel: " + BitsText()).c_str());
 }
 
+void AddTransfer(CLI::App& app, std::string& transfer) {
+  AddChoice(app, "--transfer", transfer, {"keep", "linear", "srgb"},
+            "How a .png encodes light; keep: as the input does, or linear");
+}
+
 void AddPrecision(CLI::App& app, std::string& name, const char* placeholder) {
   std::vector<std::string> names;
   for (const Precision precision : kPrecisions) names.push_back(PrecisionName(precision));

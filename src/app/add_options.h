@@ -78,6 +78,9 @@ void AddPictureFormat(CLI::App& app, std::string& format);
 // --bits, of a picture's channel.
 void AddBits(CLI::App& app, std::optional<int>& bits);
 
+// --transfer, of pictures that were read; SpecAsRead takes the word.
+void AddTransfer(CLI::App& app, std::string& transfer);
+
 // --precision, a name that PrecisionOf takes; the help shows `placeholder`, or all names if null.
 void AddPrecision(CLI::App& app, std::string& name, const char* placeholder = nullptr);
 

@@ -32,7 +32,7 @@ constexpr CommandEntry kCommands[] = {
     {"convert", "Turn a scene or model into scene JSON, or a picture into another format",
      "  sheaf convert scene.nff -o scene.json\n", &ConvertCommand},
     {"denoise", "Filter the noise out of a picture, guided by its layers",
-     "  sheaf denoise noisy.exr -o picture.png\n"
+     "  sheaf denoise noisy.exr --transfer srgb -o picture.png\n"
      "  sheaf denoise noisy.pfm --albedo a.pfm --normal n.pfm --depth d.pfm -o picture.pfm\n",
      &DenoiseCommand},
     {"check", "Validate scenes and say what rendering them would skip",

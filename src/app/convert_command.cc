@@ -179,9 +179,8 @@ Status ConvertPicture(const ConvertRequest& request) {
   ReadPictureResult& picture = read.value();
   const Film& film = picture.film;
   const bool keeps = request.transfer.empty() || request.transfer == "keep";
-  PictureSpec spec = SpecAsRead(picture, named, request.bits);
+  PictureSpec spec = SpecAsRead(picture, named, request.bits, request.transfer);
   spec.format = request.format;
-  if (request.transfer == "srgb" || (keeps && picture.is_srgb)) spec.transfer = Transfer::kSrgb;
   const bool is_developed = GivenLookOption(request.look) != nullptr;
   if (keeps && picture.is_display && !HoldsFloats(named) && !is_developed) {
     // A .png that says nothing of its transfer makes one that says nothing.
@@ -201,8 +200,7 @@ void AddConvertOptions(CLI::App& app, ConvertRequest& request) {
   AddOutput(app, request.output, "PATH", "The ending chooses the format (needed)");
   AddPictureFormat(app, request.format);
   AddBits(app, request.bits);
-  AddChoice(app, "--transfer", request.transfer, {"keep", "linear", "srgb"},
-            "How a .png encodes light; keep: as the input does, or linear");
+  AddTransfer(app, request.transfer);
   AddLookOptions(app, request.look);
   AddSceneOptions(app, request.options);
   AddMomentOptions(app, request.options);

@@ -26,6 +26,7 @@ struct DenoiseRequest {
   std::string albedo, normal, depth;  // paths; empty: the input's own layer
   std::string format;                 // of --format; empty: by the path's ending
   std::optional<int> bits;
+  std::string transfer;  // empty: keep
   LookOptions look;
   std::string target = "auto";
   std::optional<int> threads;
@@ -110,6 +111,7 @@ void AddDenoiseOptions(CLI::App& app, DenoiseRequest& request) {
   AddPath(app, "--depth", request.depth, "PATH", "Likewise; of floats");
   AddPictureFormat(app, request.format);
   AddBits(app, request.bits);
+  AddTransfer(app, request.transfer);
   AddLookOptions(app, request.look);
   AddName(app, "--target", request.target, "auto|scalar|NAME",
           "SIMD target; sheaf info lists the usable ones");
@@ -130,9 +132,8 @@ Status RunDenoise(const DenoiseRequest& given) {
   if (!read) return read.error();
   ReadPictureResult& picture = read.value();
   const std::string named = FormatPath(request.output, request.format);
-  PictureSpec spec = SpecAsRead(picture, named, request.bits);
+  PictureSpec spec = SpecAsRead(picture, named, request.bits, request.transfer);
   spec.format = request.format;
-  if (picture.is_srgb) spec.transfer = Transfer::kSrgb;
   if (HoldsLayers(named)) spec.layers = picture.film.held_layers();
   for (const GuideOption& option : GuideOptions(request)) {
     if (option.path.empty()) continue;

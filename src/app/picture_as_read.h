@@ -10,9 +10,10 @@
 namespace sheaf {
 
 // The spec of the picture, not yet decoded, in a file of `named`: its place and metadata, and as
-// many bits a channel as it had where both hold bytes or both floats. `bits` are those of --bits.
+// many bits a channel as it had where both hold bytes or both floats. `bits` are those of --bits,
+// `transfer` is the word of --transfer, if any.
 PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,
-                       std::optional<int> bits);
+                       std::optional<int> bits, const std::string& transfer);
 
 }  // namespace sheaf
 
