@@ -94,7 +94,7 @@ arrays of NumPy as they lie in memory. A stand-in for the rays of trimesh is
 there, too.")
   math(EXPR SHEAF_NEXT_PYTHON "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${SHEAF_NEXT_PYTHON}), python3-numpy")
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${SHEAF_NEXT_PYTHON}), python3-numpy, ${SHEAF_SONAME_PACKAGE} (= ${PROJECT_VERSION})")
   # Compiles the package's files where it is installed, and removes what that made.
   foreach(script postinst prerm)
     configure_file(${PROJECT_SOURCE_DIR}/packaging/python.${script} ${CMAKE_BINARY_DIR}/packaging/${script} COPYONLY
