@@ -19,6 +19,19 @@ cmake -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/us
 cmake --build "$build" --parallel "$(nproc)"
 rm -f "$build"/*.deb
 (umask 022 && cd "$build" && cpack -G DEB)
+
+# CPack writes scripts that call ldconfig. Debian's policy (8.1.1) wants a trigger instead, which the library's package has.
+unpacked=$(mktemp -d)
+trap 'rm -rf "$unpacked"' EXIT
+for package in "$build"/*.deb; do
+  dpkg-deb --ctrl-tarfile "$package" | tar -t | grep -qx ./postrm || continue
+  rm -rf "${unpacked:?}/root"
+  dpkg-deb --raw-extract "$package" "$unpacked/root"
+  for script in postinst postrm; do
+    grep -q ldconfig "$unpacked/root/DEBIAN/$script" && rm "$unpacked/root/DEBIAN/$script"
+  done
+  dpkg-deb --root-owner-group -Zxz --build "$unpacked/root" "$package" >/dev/null
+done
 if command -v lintian >/dev/null; then
   lintian --fail-on error,warning --tag-display-limit 0 "$build"/*.deb
 else

@@ -5,6 +5,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME sheaf)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_VENDOR "The Sheaf authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -18,8 +19,6 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${SHEAF_MAINTAINER})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 
 # What each component's package is called, and says of itself. The first line of a description is the short one.
 function(sheaf_package component name section description)
@@ -52,31 +51,37 @@ endfunction()
 set(CPACK_COMPONENTS_ALL command library development)
 sheaf_package(command sheaf graphics
 "SIMD packet ray tracer for CPUs
- The command sheaf renders scenes and models (glTF, OBJ, PLY, NFF and its own
- JSON) with mirrors, glass and hard shadows after Whitted. A picture has the
- same bits on every processor and with any number of threads.")
+The command sheaf renders scenes and models (glTF, OBJ, PLY, NFF and its own
+JSON) with mirrors, glass and hard shadows after Whitted. A picture has the
+same bits on every processor and with any number of threads.")
 sheaf_package(library ${SHEAF_SONAME_PACKAGE} libs
 "SIMD packet ray tracer for CPUs - library
- Sheaf traces rays in packets as wide as the processor's vectors, against
- triangles, spheres and disks, watertight and with the same bits on every
- processor, and renders scenes after Whitted.
- .
- This is the shared library.")
+Sheaf traces rays in packets as wide as the processor's vectors, against
+triangles, spheres and disks, watertight and with the same bits on every
+processor, and renders scenes after Whitted.
+
+This is the shared library.")
+# What other packages that link it depend on, and that the linker's cache is renewed.
+file(WRITE ${CMAKE_BINARY_DIR}/packaging/shlibs
+  "libsheaf ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${SHEAF_SONAME_PACKAGE} (>= ${PROJECT_VERSION})\n")
+file(WRITE ${CMAKE_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
+  ${CMAKE_BINARY_DIR}/packaging/shlibs ${CMAKE_BINARY_DIR}/packaging/triggers)
 sheaf_package(development libsheaf-dev libdevel
 "SIMD packet ray tracer for CPUs - development files
- Sheaf traces rays in packets as wide as the processor's vectors, against
- triangles, spheres and disks, watertight and with the same bits on every
- processor, and renders scenes after Whitted.
- .
- These are the headers for C++20 and for C99, and files for CMake and
- pkg-config.")
+Sheaf traces rays in packets as wide as the processor's vectors, against
+triangles, spheres and disks, watertight and with the same bits on every
+processor, and renders scenes after Whitted.
+
+These are the headers for C++20 and for C99, and files for CMake and
+pkg-config.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${SHEAF_SONAME_PACKAGE} (= ${PROJECT_VERSION}), libglm-dev")
 if(OPENIMAGEIO_FOUND)
   list(APPEND CPACK_COMPONENTS_ALL images)
   sheaf_package(images sheaf-openimageio graphics
 "SIMD packet ray tracer for CPUs - more image formats
- With this package sheaf, its library and its Python module read textures and
- surroundings of BMP, TGA, TIFF, WebP, HDR and EXR, by OpenImageIO.")
+With this package sheaf, its library and its Python module read textures and
+surroundings of BMP, TGA, TIFF, WebP, HDR and EXR, by OpenImageIO.")
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS sheaf-openimageio)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS sheaf-openimageio)
 endif()
@@ -84,12 +89,12 @@ if(TARGET sheaf_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
   sheaf_package(python python3-sheaf python
 "SIMD packet ray tracer for CPUs - Python module
- Traces rays against triangles, spheres and disks, and renders scenes, on the
- arrays of NumPy as they lie in memory. A stand-in for the rays of trimesh is
- there, too.")
+Traces rays against triangles, spheres and disks, and renders scenes, on the
+arrays of NumPy as they lie in memory. A stand-in for the rays of trimesh is
+there, too.")
   math(EXPR SHEAF_NEXT_PYTHON "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${SHEAF_NEXT_PYTHON}), python3-numpy")
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${SHEAF_NEXT_PYTHON}), python3-numpy, ${SHEAF_SONAME_PACKAGE} (= ${PROJECT_VERSION})")
   # Compiles the package's files where it is installed, and removes what that made.
   foreach(script postinst prerm)
     configure_file(${PROJECT_SOURCE_DIR}/packaging/python.${script} ${CMAKE_BINARY_DIR}/packaging/${script} COPYONLY

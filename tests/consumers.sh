@@ -45,7 +45,7 @@ static=$work/moved-static shared=$work/moved-shared
 install_and_move "$build" static
 echo "installed: $(cd "$static/include" && echo sheaf/*.h)"
 configure_and_build "$root" "$work/shared" -DBUILD_SHARED_LIBS=ON -DCMAKE_CXX_FLAGS="$one_target -O0" -DCMAKE_BUILD_TYPE=Plain \
-  -DSHEAF_BUILD_COMMAND=OFF -DSHEAF_BUILD_BENCH=OFF
+  -DSHEAF_BUILD_COMMAND=OFF -DSHEAF_BUILD_BENCH=OFF -DSHEAF_PYTHON=OFF
 install_and_move "$work/shared" shared
 library=$(echo "$shared"/lib*/libsheaf.so "$shared"/lib*/*/libsheaf.so | tr ' ' '\n' | grep -v '\*')
 readelf -d "$library" | grep -q 'SONAME.*libsheaf\.so\.0\.2' || fail "libsheaf.so has another SONAME"

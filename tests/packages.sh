@@ -45,7 +45,7 @@ if command -v mmdebstrap >/dev/null && [[ $(id -u) -eq 0 ]]; then
   mmdebstrap --variant=apt --quiet "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root"
   mkdir "$root/packages"
   cp "$build"/*.deb "$root/packages"
-  chroot "$root" sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends /packages/*.deb' >"$work/log" 2>&1 ||
+  chroot "$root" sh -c 'apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends /packages/*.deb' >"$work/log" 2>&1 ||
     { cat "$work/log" >&2; fail "apt does not install them"; }
   chroot "$root" sh -c "$use"
   # shellcheck disable=SC2086

@@ -34,16 +34,19 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sheaf.spdx.json DESTINATION ${SHEAF_DO
 if(SHEAF_BUILD_COMMAND AND NOT CMAKE_CROSSCOMPILING)
   set(SHEAF_MANUAL ${CMAKE_CURRENT_BINARY_DIR}/manual)
   add_custom_command(OUTPUT ${SHEAF_MANUAL}/sheaf.1
-    COMMAND ${CMAKE_COMMAND} -DSHEAF=$<TARGET_FILE:sheaf> -DTO=${SHEAF_MANUAL} -P ${CMAKE_CURRENT_SOURCE_DIR}/src/app/write_manual.cmake
+    COMMAND ${CMAKE_COMMAND} -DSHEAF=$<TARGET_FILE:sheaf> -DTO=${SHEAF_MANUAL} -DCOMPRESS=${SHEAF_DEBIAN}
+      -P ${CMAKE_CURRENT_SOURCE_DIR}/src/app/write_manual.cmake
     DEPENDS sheaf src/app/write_manual.cmake COMMENT "Writing man pages and completions")
   add_custom_target(sheaf_manual ALL DEPENDS ${SHEAF_MANUAL}/sheaf.1)
   if(SHEAF_DEBIAN)
     set(SHEAF_ZSH_DEFAULT ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+    set(SHEAF_PAGES "*.1.gz")
   else()
     set(SHEAF_ZSH_DEFAULT ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    set(SHEAF_PAGES "*.1")
   endif()
   set(SHEAF_ZSH_DIR ${SHEAF_ZSH_DEFAULT} CACHE STRING "Where completions for zsh are installed, below the prefix")
-  install(DIRECTORY ${SHEAF_MANUAL}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT command FILES_MATCHING PATTERN "*.1")
+  install(DIRECTORY ${SHEAF_MANUAL}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT command FILES_MATCHING PATTERN ${SHEAF_PAGES})
   install(FILES ${SHEAF_MANUAL}/sheaf.bash RENAME sheaf DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT command)
   install(FILES ${SHEAF_MANUAL}/_sheaf DESTINATION ${SHEAF_ZSH_DIR} COMPONENT command)
 endif()
