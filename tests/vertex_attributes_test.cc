@@ -146,7 +146,8 @@ TEST_CASE("each texture lies by its own set of coordinates") {
     painted.base_colour = striped;
     scene.materials[0] = painted;
     for (glm::vec2& uv : MeshOf(scene.objects[0]).uv) uv *= 1.0f / 64;
-    for (const glm::dvec3& colour : RowIn(scene, 4)) {
+    // Not all of five pixels meet a middle between two texels, where one look at the image is grey.
+    for (const glm::dvec3& colour : RowIn(scene, 5)) {
       CHECK(colour.x == doctest::Approx(0.5).epsilon(0.01));
     }
     std::get<Texture>(scene.materials[0].base_colour).set = 0;
