@@ -168,7 +168,8 @@ HWY_INLINE void WeighDrawn(D d, const SurfaceView<Real>& surfaces, std::uint32_t
   const V ray_density =
       hn::Mul(hn::LoadU(d, surfaces.scatter + i), hn::Mul(n_dot_l, hn::Set(d, kInversePi<Real>)));
   const V other = hn::Div(ray_density, hn::Mul(density, falloff));
-  const V weight = hn::Div(one, hn::Add(one, hn::Mul(other, other)));
+  const V power = hn::Div(one, hn::Add(one, hn::Mul(other, other)));
+  const V weight = hn::IfThenElse(hn::Gt(ray_density, hn::Zero(d)), power, one);
   for (Real* const field : {incidence.r, incidence.g, incidence.b}) {
     hn::StoreU(hn::Mul(hn::LoadU(d, field + i), weight), d, field + i);
   }

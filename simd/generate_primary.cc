@@ -24,11 +24,11 @@ HWY_INLINE void LookThroughLens(D d, const CameraData<Real>& camera, V u, V v, V
   }
   const V ahead = Dot(d, dx, dy, dz, hn::Set(d, camera.forward[0]), hn::Set(d, camera.forward[1]),
                       hn::Set(d, camera.forward[2]));
-  const V length = hn::Div(hn::Set(d, camera.focus), ahead);
+  const V nearness = hn::Div(ahead, hn::Set(d, camera.focus));
   const auto move = [&](int axis, V& origin, V& direction) SHEAF_LAMBDA {
     const V aside = hn::Add(hn::Mul(hn::Set(d, camera.lens_right[axis]), a),
                             hn::Mul(hn::Set(d, camera.lens_up[axis]), b));
-    direction = hn::Sub(hn::Mul(direction, length), aside);
+    direction = hn::Sub(direction, hn::Mul(aside, nearness));
     origin = hn::Add(origin, aside);
   };
   move(0, ox, dx);

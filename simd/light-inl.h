@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 
 // The unit vector to the light, its cosine with the normal (0 where the light lies on the point)
-// and the denominator of its falloff: IncidenceOf in src/scalar/shade.h.
+// and the denominator of its falloff: IncidenceOf in src/scalar/incidence.h.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE void ComputeIncidence(D d, const LightData<Real>& light,
                                  const SurfaceView<Real>& surfaces, std::uint32_t i, V& lx, V& ly,
@@ -45,7 +45,7 @@ HWY_INLINE void ComputeIncidence(D d, const LightData<Real>& light,
 }
 
 // A spot light's share toward surfaces that see it along (lx, ly, lz): ConeShare in
-// src/scalar/shade.h.
+// src/scalar/incidence.h.
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
 HWY_INLINE V ConeShare(D d, const LightData<Real>& light, V lx, V ly, V lz) {
   const V zero = hn::Zero(d), one = hn::Set(d, Real(1));

@@ -163,7 +163,7 @@ struct PixelCone {
 
 enum class LightKind : std::uint32_t {
   kPointFromLight,    // shadow rays run from the light, so that a batch shares its origin
-  kPointFromSurface,  // a light so far away that rounding there would reach the surface
+  kPointFromSurface,  // a light with a size, or so far away that rounding would reach the surface
   kDirectional,
 };
 
@@ -187,7 +187,7 @@ template <typename Real>
 struct LightData {
   LightKind kind;
   Real vector[3];   // position, or the unit vector toward a directional light
-  Real rgb[3];      // colour * intensity * exposure
+  Real rgb[3];      // colour * intensity * exposure, where lengths are placed ones
   Real falloff[3];  // kc, kl, kq; 1, 0, 0 for directional lights
   std::uint32_t casts_shadows;
   // A spot light's cone: light is scaled by the square of cone_scale * cos + cone_offset, clamped

@@ -97,7 +97,9 @@ SpawnCounts SpawnRaysLanes(const MaterialData<Real>& material, const SurfaceView
                             const PathOutput<Real>& paths, std::uint32_t& at) HWY_ATTR {
       if (material.needs & kNeedsGloss) {
         FinishDirection(d, material, fx, fy, fz, nx, ny, nz, side, x, y, z);
-        const V share = GlossShare(d, material, surfaces, i, Dot(d, x, y, z, nx, ny, nz), side);
+        const V rough = GlossShare(d, material, surfaces, i, Dot(d, x, y, z, nx, ny, nz), side);
+        const auto goes_straight = hn::And(hn::Eq(eta, one), hn::Lt(side, zero));
+        const V share = hn::IfThenElse(goes_straight, one, rough);
         wr = hn::Mul(wr, share), wg = hn::Mul(wg, share), wb = hn::Mul(wb, share);
       }
       if (material.needs & kNeedsChoice) {

@@ -169,6 +169,44 @@ TEST_CASE("the penumbra of an edge is that of a disk behind a chord") {
   }
 }
 
+// Where indices match, facets do not scatter what goes through.
+TEST_CASE("holes of rough surfaces let all light through") {
+  Scene scene;
+  scene.settings.background = Colour(1.0);
+  Material material;
+  material.reflect = Colour(0.5);
+  material.roughness = 1;
+  material.alpha = {AlphaMode::kMask, 0.0};
+  scene.materials = {material};
+  scene.objects = {
+      {"", Quad{{Vec3d(-9, -9, 0), Vec3d(9, -9, 0), Vec3d(9, 9, 0), Vec3d(-9, 9, 0)}}, 0}};
+  scene.cameras = {{"", {1, 2, 5}, {0, 0, 0}, {0, 1, 0}, Perspective{40}}};
+  RenderOptions options;
+  options.width = options.height = 8;
+  options.samples = 4;
+  const Film film = RenderOrFail(scene, scene.cameras[0], options);
+  for (const float x : film.rgb) CHECK(x == doctest::Approx(1.0f).epsilon(1e-6));
+}
+
+TEST_CASE("a lens that is sharp at infinity shows what lies there") {
+  Scene scene = DistributedScene(1);
+  scene.settings.background = Colour(0.0);
+  scene.lights.clear();
+  for (Material& material : scene.materials) material.emission = Colour(1.0);
+  RenderOptions options;
+  options.width = options.height = 24;
+  double last = 0;
+  for (const double focus : {1e6, 1e25}) {
+    scene.cameras[0].lens = Lens{1e-4, focus};
+    const Film film = RenderOrFail(scene, scene.cameras[0], options);
+    double sum = 0;
+    for (const float x : film.rgb) sum += static_cast<double>(x);
+    if (last > 0) CHECK(sum == doctest::Approx(last).epsilon(1e-3));
+    last = sum;
+  }
+  CHECK(last > 100);
+}
+
 // Rays through a lens spread over a disk of the aperture's diameter times |1 - distance / focus|.
 TEST_CASE("the circle of confusion is the lens' own seen through the plane of focus") {
   Camera camera{"", {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, Perspective{40}};

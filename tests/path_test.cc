@@ -189,6 +189,30 @@ TEST_CASE("a pane of glass before a lamp changes nothing where it does not bend 
   CHECK(mean == doctest::Approx(LightUnderLamp(5, 5)).epsilon(2e-3));
 }
 
+TEST_CASE("at the last depth lamps give all of their light") {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.samples = 256;
+  options.max_depth = 0;
+  for (const double side : {0.5, 20.0}) {
+    const Scene scene = UnderLamp(side, side);
+    const double mean = MeanOf(RenderOrFail(scene, scene.cameras[0], options));
+    CHECK(mean == doctest::Approx(LightUnderLamp(side, side)).epsilon(0.02));
+  }
+}
+
+// What is not there neither lights nor is in the way.
+TEST_CASE("lamps with alpha shine as far as they are there") {
+  Scene scene = UnderLamp(5, 5);
+  scene.materials[1].alpha = {AlphaMode::kBlend, 0.5};
+  scene.settings.max_depth = 3;
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.samples = 256;
+  const double half = MeanOf(RenderOrFail(scene, scene.cameras[0], options));
+  CHECK(half == doctest::Approx(LightUnderLamp(5, 5) / 2).epsilon(3e-3));
+}
+
 TEST_CASE("lamps of all colours and powers are drawn as often as they are bright") {
   Scene scene = UnderLamp(1, 1);
   Material red = scene.materials[1], off = scene.materials[0];

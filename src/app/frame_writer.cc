@@ -24,7 +24,7 @@ std::string SettingsText(const RenderOptions& options, const Frame& frame) {
                                                                   : kind.name;
   return fmt::format(
       "{}x{} pixels, {} samples, depth {}, {} precision, min weight {:g}{}, "
-      "eye {} {} {}, look at {} {} {}, {} {}{}{}{}",
+      "eye {} {} {}, look at {} {} {}, {} {}{}{}{}{}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
       options.error      ? fmt::format(", error {:g}", *options.error)
@@ -32,7 +32,11 @@ std::string SettingsText(const RenderOptions& options, const Frame& frame) {
                          : "",
       eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),
       look.ev != 0 ? fmt::format(", {:.3g} stops", look.ev) : "",
-      look.tone == Tone::kFilmic ? ", filmic" : "", frame.is_denoised ? ", denoised" : "");
+      look.tone == Tone::kFilmic ? ", filmic" : "",
+      options.integrator && *options.integrator != Integrator::kDistributed
+          ? fmt::format(", {} integrator", IntegratorName(*options.integrator))
+          : "",
+      frame.is_denoised ? ", denoised" : "");
 }
 
 }  // namespace

@@ -28,11 +28,16 @@
 namespace sheaf {
 namespace {
 
+// Of --error without --spp.
+constexpr int kMostForError = 1024;
+
 Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings& settings) {
   RenderOptions options = FrameOptions(settings, request.size, request.samples);
   options.max_depth = request.max_depth.value_or(settings.max_depth);
   options.contrast = request.contrast;
   options.error = request.error;
+  // The scene's samples may be those of a picture without such a goal.
+  if (request.error && !request.samples) options.samples = std::max(options.samples, kMostForError);
   if (request.error && request.contrast) return Usage("--error: not together with --adaptive");
   if (!request.samples && !request.contrast && !request.error) {
     options.contrast = settings.contrast;

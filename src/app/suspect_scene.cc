@@ -40,8 +40,10 @@ bool IsLit(const Scene& scene, const std::set<std::uint32_t>& used) {
   }
   // Surroundings are taken to shine: a black picture all around is found by the frame itself.
   const Settings& settings = scene.settings;
-  const Colour ambient =
-      settings.ambient.value_or(settings.environment ? Colour(1.0) : settings.background);
+  const Colour around = settings.environment ? Colour(1.0) : settings.background;
+  const bool is_path = settings.integrator == Integrator::kPath;
+  if (is_path && Largest(around) > 0) return true;
+  const Colour ambient = is_path ? Colour(0.0) : settings.ambient.value_or(around);
   return std::any_of(used.begin(), used.end(), [&](std::uint32_t index) {
     const Material& material = scene.materials[index];
     return Largest(material.emission) > 0 ||

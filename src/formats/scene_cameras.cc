@@ -146,6 +146,9 @@ Lens ReadLens(const JsonCursor& value, const Camera& camera) {
       opening.Fail("only perspective cameras have an f-number; say \"aperture\"");
     } else if (opening.Read(kStop, &f_stop)) {
       lens.aperture = ApertureOf(*perspective, sensor_height, f_stop);
+      if (!(lens.aperture >= kLensLength.low && lens.aperture <= kLensLength.high)) {
+        opening.Fail(fmt::format("the aperture would be {:.6g}", lens.aperture));
+      }
     }
   } else {
     opening.Read(kLensLength, &lens.aperture);

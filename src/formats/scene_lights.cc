@@ -171,6 +171,10 @@ Light ReadLight(JsonObject* object) {
   const JsonCursor reference = object->Optional("reference");
   if (!source.present() || !strength.present()) return light;
   const auto* point = std::get_if<PointLight>(&light.source);
+  const bool is_sun = std::holds_alternative<DirectionalLight>(light.source);
+  if (strength.key() == "E0" && point == nullptr && !is_sun) {
+    strength.Fail("a light with a size has an \"intensity\"");
+  }
   if (point == nullptr || strength.key() != "E0") {
     reference.Fail("only \"E0\" of a point light has a reference point");
     return light;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sheaf/formats.h"
+#include "sheaf/render.h"
 #include "src/core/match.h"
 #include "src/formats/other_images.h"
 #include "src/formats/printable.h"
@@ -143,6 +144,9 @@ Settings ReadSettings(const JsonCursor& value, ColourSource* source) {
     double most = 0;
     if (error.Read(kError, &most)) settings.error = most;
     if (settings.contrast) error.Fail("conflicts with \"adaptive\"");
+    if (settings.samples < kLeastErrorSamples) {
+      error.Fail(fmt::format("needs samples of {} or more", kLeastErrorSamples));
+    }
   }
   object.Optional("max_depth").ReadInteger(kDepthLimit, &settings.max_depth);
   const JsonCursor srgb = object.Optional("srgb");

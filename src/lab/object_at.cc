@@ -13,7 +13,7 @@ namespace {
 stress::Ray RayOf(const ScenePlacement& placement, const Camera& camera, int width, int height,
                   int x, int y) {
   const CameraData<float> lens = CompileCamera<float>(camera, width, height, placement);
-  return scalar::CameraRay(lens, static_cast<float>(x), static_cast<float>(y), 0.5f, 0.5f);
+  return scalar::PinholeRay(lens, static_cast<float>(x), static_cast<float>(y), 0.5f, 0.5f);
 }
 
 Vec3d ToVec(const Vec3<float>& v) {

@@ -35,6 +35,9 @@ std::string Complaint(const RenderOptions& options) {
   if (options.error && !(*options.error > 0 && *options.error <= 1)) {
     return "error must lie in (0, 1]";
   }
+  if (options.error && options.samples < kLeastErrorSamples) {
+    return fmt::format("an error to reach needs {} samples or more", kLeastErrorSamples);
+  }
   if (options.error && options.contrast) return "contrast and error exclude each other";
   if (options.precision == Precision::kFast && options.target.is_scalar()) {
     return "fast precision needs a SIMD target";

@@ -11,16 +11,20 @@
 namespace sheaf {
 namespace {
 
-// Numbers of emitters are kept as floats, which hold these exactly.
-constexpr std::size_t kMostEmitters = 1 << 24;
+// One number chooses an emitter and a place on it: of the 24 bits of a float so many are left for
+// the place. Where there are more emitters, rays find them alone.
+constexpr std::size_t kMostEmitters = 1 << 16;
 
 // The end of a shadow ray lies this many roundoffs of the corners above the lamp, and more by its
 // length: more than rounding carries the point that was drawn.
 constexpr double kEndRoundoffs = 64;
 
+// Whether all that rays see of it, from both sides and at every point, is its emission.
 template <typename Real>
 bool Shines(const MaterialData<Real>& material) {
-  return AnyPositive(material.emission) && material.finish.emission == kNoTexture;
+  const FinishData<Real>& finish = material.finish;
+  return AnyPositive(material.emission) && finish.emission == kNoTexture &&
+         finish.alpha == AlphaUse::kOpaque && !AnyPositive(material.transmit);
 }
 
 // The mean of the channels: what emitters are drawn by.
@@ -88,7 +92,7 @@ void CompileEmitters(const CompiledGeometry<Real>& geometry,
   for (const PrimitiveInfo& primitive : geometry.primitives) {
     if (primitive.kind() != PrimitiveKind::kTriangle) continue;
     const MaterialData<Real>& material = materials[primitive.material];
-    if (!Shines(material) || powers.size() == kMostEmitters) continue;
+    if (!Shines(material)) continue;
     const auto vertex = [&](int corner) {
       const auto at = [&](int axis) {
         return static_cast<double>(triangles.vertex[corner][axis][primitive.index()]);
@@ -113,7 +117,7 @@ void CompileEmitters(const CompiledGeometry<Real>& geometry,
     material_of.push_back(primitive.material);
     all += powers.back();
   }
-  if (powers.empty()) return;
+  if (powers.empty() || powers.size() > kMostEmitters) return;
   for (const std::uint32_t i : material_of) {
     MaterialData<Real>& material = materials[i];
     const double density = PowerOf(material) / all;

@@ -294,7 +294,9 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     }
     CompileFinish(material, compiled, data);
     if (scene.settings.shadows == Shadows::kThrough) Store(material.transmit, data.passes);
-    if (integrator == Integrator::kWhitted) data.slope_width = 0;
+    const bool has_facets = AnyPositive(data.reflect) || AnyPositive(data.transmit) ||
+                            data.finish.metallic_roughness != kNoTexture;
+    if (integrator == Integrator::kWhitted || !has_facets) data.slope_width = 0;
     if (data.slope_width > 0) data.gloss = compiled.gloss.TableOf(data);
     data.needs = NeedsOf(data);
     if (integrator == Integrator::kPath) FollowOneRay(data);

@@ -1,5 +1,6 @@
 #include "src/render/pixel_filter.h"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 
@@ -38,8 +39,8 @@ Weights SumWeights(double (*weight_at)(double)) {
 }
 
 double PlaceIn(const Weights& sums, double share) {
-  std::size_t cell = 0;
-  while (cell + 1 < kCells && sums[cell + 1] <= share) ++cell;
+  const auto above = std::upper_bound(sums.begin() + 1, sums.end() - 1, share);
+  const auto cell = static_cast<std::size_t>(above - sums.begin()) - 1;
   const double width = sums[cell + 1] - sums[cell];
   const double part = width > 0 ? (share - sums[cell]) / width : 0.5;
   return 0.5 - kReach + 2 * kReach * (static_cast<double>(cell) + part) / kCells;

@@ -33,6 +33,13 @@ std::uint32_t NeedsOfAny(const FrameView<Real>& frame) {
   return needs;
 }
 
+// Whether rays leave by mirror or interface, not by diffuse reflection alone.
+template <typename Real>
+bool ReflectsOrTransmits(const MaterialData<Real>& material) {
+  return AnyPositive(material.reflect) || (material.needs & kNeedsTransmission) != 0 ||
+         material.finish.metallic_roughness != kNoTexture;
+}
+
 }  // namespace
 
 // ---- The schedule ----
@@ -169,6 +176,8 @@ void TileRenderer<Real>::ChooseRays(const PathView<Real>& parents, int depth,
   const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
   kernels_.choose_lobes(material, surfaces, parents, samples_.DrawForSurfaces(kLobeDimension),
                         roulette, count, surfaces_.output());
+  // Rays that will not be traced find no lamps.
+  if (depth == frame_.max_depth) std::fill_n(surfaces_.output().scatter, count, Real(0));
   clock_.Charge(Phase::kSpawn, count, count);
 }
 
@@ -182,6 +191,7 @@ void TileRenderer<Real>::Spawn(const PathView<Real>& parents, const MaterialData
         material, surfaces, count, parents, samples_.DrawForSurfaces(kDiffuseDimension),
         frame_.min_throughput, diffuse.next_rays(), diffuse.next_paths()));
     clock_.Charge(Phase::kSpawn, count, count);
+    if (!ReflectsOrTransmits(material)) return;
   }
   RayQueue<Real>&reflected = next(ChildKind::kReflected), &refracted = next(ChildKind::kRefracted);
   reflected.MakeRoom(path_fields_);

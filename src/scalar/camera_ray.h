@@ -49,8 +49,8 @@ Ray<Real> CameraRay(const CameraData<Real>& camera, Real x, Real y, Real sx, Rea
   const PlanePoint<Real> p =
       camera.blades > 0 ? PolygonPoint(camera.blades, camera.blade_turn, lens) : DiskPoint(lens);
   const Vec3<Real> aside = FromArray(camera.lens_right) * p.x + FromArray(camera.lens_up) * p.y;
-  const Real length = camera.focus / Dot(ray.direction, FromArray(camera.forward));
-  ray.direction = Normalize(ray.direction * length - aside);
+  const Real nearness = Dot(ray.direction, FromArray(camera.forward)) / camera.focus;
+  ray.direction = Normalize(ray.direction - aside * nearness);
   ray.origin = ray.origin + aside;
   return ray;
 }

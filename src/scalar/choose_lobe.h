@@ -7,7 +7,6 @@
 #ifndef SHEAF_SCALAR_CHOOSE_LOBE_H_
 #define SHEAF_SCALAR_CHOOSE_LOBE_H_
 
-#include <algorithm>
 #include <cmath>
 
 #include "simd/sample_terms.h"
@@ -32,7 +31,7 @@ Real LargestOf(Vec3<Real> c) {
   return xy > c.z ? xy : c.z;
 }
 
-// `roulette` is 1 where dim paths end, 0 where all go on; `u` in [0, 1) chooses. `here` is the
+// `u` in [0, 1) chooses. `here` is the
 // material as it is at the surface, where its base colour is `base`.
 template <typename Real>
 Lobes<Real> ChooseLobe(const MaterialData<Real>& material, const MaterialData<Real>& here,

@@ -5,13 +5,14 @@
 #include <bit>
 #include <cstdint>
 
+#include "sheaf/render.h"
 #include "src/core/vec3.h"
 
 namespace sheaf::scalar {
 
 // Fewer samples tell nothing of their error. From here on a pixel is judged at powers of two, where
 // Sobol's points are spread most evenly.
-inline constexpr std::uint32_t kLeastSamples = 16;
+inline constexpr std::uint32_t kLeastSamples = kLeastErrorSamples;
 
 constexpr bool IsJudgedAt(std::uint32_t samples) {
   return samples >= kLeastSamples && std::has_single_bit(samples);

@@ -175,8 +175,10 @@ Incidence<Real> IncidenceOf(const LightData<Real>& light, const Surface<Real>& s
   if (!falling.is_light) incidence.n_dot_l = 0;
   if (light.shape == LightShape::kEmitters) {
     const Real ray_density = surface.scatter * (incidence.n_dot_l * kInversePi<Real>);
-    incidence.colour =
-        incidence.colour * PowerWeight(ray_density / (falling.density * falling.falloff));
+    if (ray_density > 0) {
+      const Real other = ray_density / (falling.density * falling.falloff);
+      incidence.colour = incidence.colour * PowerWeight(other);
+    }
   }
   incidence.attenuation = 1 / falling.falloff;
   // Nor does a shading normal light the back of a face, but where the face is bent.

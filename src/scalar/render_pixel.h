@@ -1,9 +1,9 @@
 // One pixel, one ray at a time: the specification of a whole frame.
 //
 // Whitted, "An Improved Illumination Model for Shaded Display" (CACM 1980), breadth first: a
-// depth's rays are shaded in order, then all their reflections, then all their refractions make the
-// next depth. Each ray's colour, times its throughput, is added to the sample in that order; simd/
-// and src/render keep to it.
+// depth's rays are shaded in order, then all their reflections, refractions and diffuse rays make
+// the next depth. Each ray's colour, times its throughput, is added to the sample in that order;
+// simd/ and src/render keep to it.
 #ifndef SHEAF_SCALAR_RENDER_PIXEL_H_
 #define SHEAF_SCALAR_RENDER_PIXEL_H_
 
@@ -144,7 +144,8 @@ Lobes<Real> ChooseRays(const FrameView<Real>& frame, const Path<Real>& path, Sam
   const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;
   const Lobes<Real> lobes =
       ChooseLobe(material, here, surface, base, path.throughput, roulette, draw(kLobeDimension).u);
-  surface.scatter = lobes.scatter;
+  // A ray that will not be traced finds no lamp.
+  surface.scatter = depth < frame.max_depth ? lobes.scatter : Real(0);
   return lobes;
 }
 

@@ -72,7 +72,7 @@ Vec3<Real> LitBy(const LightData<Real>& light, const MaterialData<Real>& materia
                  const Surface<Real>& surface, Vec3<Real> base, const Incidence<Real>& incidence) {
   const Real diffuse = material.kd * incidence.n_dot_l;
   Real highlight = 0;
-  // Rays find the mirror image of what shines.
+  // The image of a lamp is what rays find in its mirror.
   if (material.ks > 0 && light.shape != LightShape::kEmitters) {
     const Vec3<Real> h = Normalize(incidence.l - surface.direction);
     const Real n_dot_h = Dot(surface.normal, h);

@@ -139,7 +139,10 @@ Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& sur
   }
   if (is_rough) {
     const Real reflected = GlossShare(material, surface, spawned.reflected.ray.direction, Real(1));
-    const Real refracted = GlossShare(material, surface, spawned.refracted.ray.direction, Real(-1));
+    // Where indices match there are no facets: what goes through is not bent.
+    const Real refracted =
+        eta == 1 ? Real(1)
+                 : GlossShare(material, surface, spawned.refracted.ray.direction, Real(-1));
     for (int i = 0; i < 3; ++i) {
       spawned.reflected.throughput[i] = spawned.reflected.throughput[i] * reflected;
       spawned.refracted.throughput[i] = spawned.refracted.throughput[i] * refracted;

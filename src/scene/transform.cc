@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+#include <variant>
 
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
@@ -49,6 +52,11 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     if (!fault.empty()) return fault;
   }
   for (Light& light : scene->lights) {
+    const bool is_round = std::holds_alternative<DiskLight>(light.source) ||
+                          std::holds_alternative<SphereLight>(light.source);
+    if (is_round && !transform.KeepsSpheres()) {
+      return "a round light can be turned, moved and scaled alike along all axes only";
+    }
     Match(
         light.source,
         [&](PointLight& point) {
@@ -60,6 +68,8 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
           rectangle.center = transform.Point(rectangle.center);
           rectangle.u = transform.Vector(rectangle.u);
           rectangle.v = transform.Vector(rectangle.v);
+          // Mirrored, it would shine from its other side.
+          if (glm::determinant(transform.linear) < 0) std::swap(rectangle.u, rectangle.v);
         },
         [&](DiskLight& disk) {
           disk.center = transform.Point(disk.center);
@@ -79,6 +89,9 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     const double lens = has_length ? transform.Scale() : 1;
     SetParameter(camera.projection, ParameterOf(camera.projection) * lens);
     if (camera.lens) {
+      if (!transform.KeepsSpheres()) {
+        return "a lens can be turned, moved and scaled alike along all axes only";
+      }
       camera.lens->aperture *= transform.Scale();
       if (camera.lens->focus) *camera.lens->focus *= transform.Scale();
     }

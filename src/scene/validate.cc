@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "src/core/match.h"
 #include "src/scene/direction.h"
@@ -297,6 +298,9 @@ void Check(const Settings& settings, FirstFault& fault) {
   fault.Number("samples", settings.samples, {1, kMaxSamples, "a number in [1, 65536]"});
   if (settings.contrast) fault.Number("adaptive", *settings.contrast, kShare);
   if (settings.error) fault.Number("error", *settings.error, {kSmallest, 1, "a number in (0, 1]"});
+  if (settings.error && settings.samples < kLeastErrorSamples) {
+    fault.Fail(fmt::format("error needs samples of {} or more", kLeastErrorSamples));
+  }
   if (settings.contrast && settings.error) fault.Fail("adaptive and error exclude each other");
   fault.Number("max_depth", settings.max_depth, {0, kMaxDepth, "a number in [0, 1000000]"});
   fault.Components("background", settings.background, kAtLeastZero);

@@ -44,6 +44,9 @@ inline constexpr int kMaxThreads = 1024;
 // Where an option holds this, the scene's own setting (Settings in sheaf/scene.h) is used.
 inline constexpr int kFromScene = -1;
 
+// Fewer samples tell nothing of their error.
+inline constexpr int kLeastErrorSamples = 16;
+
 // How a frame is rendered. As it is made it asks for the picture that the scene's settings
 // describe, on all cores.
 struct RenderOptions {
@@ -59,9 +62,10 @@ struct RenderOptions {
   // Adaptive sampling: where given, a pixel gets more than its first sample only at edges, and
   // colours that differ by more than this are one, in [0, 1]. The scene's where samples are.
   std::optional<double> contrast;
-  // Where given, above 0: a pixel gets samples until the standard error of its mean, by its
+  // Where given, in (0, 1]: a pixel gets samples until the standard error of its mean, by its
   // samples' variance, is at most this in each channel, or as a part of a channel above 1; it gets
-  // 16 at least and `samples` at most. Not together with `contrast`. The scene's where samples are.
+  // kLeastErrorSamples at least and `samples`, which are no fewer, at most. Not together with
+  // `contrast`. The scene's where samples are.
   std::optional<double> error;
   // How light is followed; absent: the scene's.
   std::optional<Integrator> integrator;
