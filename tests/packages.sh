@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the Debian packages (packaging/build.sh, with lintian), installs them into a root of their own, uses them there and
+# Builds the Debian packages (src/packaging/build.sh, with lintian), installs them into a root of their own, uses them there and
 # removes them.
 #
 #   tests/packages.sh [BUILD [cmake arguments]]
@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build/packages}
-packaging/build.sh "$build" "${@:2}"
+src/packaging/build.sh "$build" "${@:2}"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,6 +1,6 @@
 # Installs the library for find_package and pkg-config, the command if it is built with its man pages and completions, the
 # scenes and the documentation. Every path is relative to the prefix, which may be moved. `cmake --build BUILD --target
-# uninstall` removes it all. The components are the Debian packages (packaging/packages.cmake).
+# uninstall` removes it all. The components are the Debian packages (src/packaging/packages.cmake).
 include(CMakePackageConfigHelpers)
 
 set(SHEAF_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/sheaf)

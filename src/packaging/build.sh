@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Builds the Debian packages, and has lintian check them where it is installed.
 #
-#   packaging/build.sh [BUILD [cmake arguments]]      BUILD: build/packages by default; the packages are in BUILD itself
+#   src/packaging/build.sh [BUILD [cmake arguments]]      BUILD: build/packages by default; the packages are in BUILD itself
 #
 # Install them by name and path: apt install ./build/packages/*.deb
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=${1:-build/packages}
 
 # The time that the packages bear: that of what they are made of.

@@ -1,4 +1,4 @@
-# The Debian packages, by CPack: one a component of the installation. packaging/build.sh configures, builds and checks them.
+# The Debian packages, by CPack: one a component of the installation. src/packaging/build.sh configures, builds and checks them.
 #
 # The library's package has the number of its soname in its name, as Debian's policy (8.1) wants it: libsheaf.so.0.2.
 set(CPACK_GENERATOR DEB)
@@ -30,7 +30,7 @@ function(sheaf_package component name section description)
   # What Debian wants below share/doc of each package, and its exceptions from lintian's rules.
   set(folder ${CMAKE_BINARY_DIR}/packaging/${name})
   file(MAKE_DIRECTORY ${folder})
-  configure_file(${PROJECT_SOURCE_DIR}/packaging/copyright ${folder}/copyright COPYONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/src/packaging/copyright ${folder}/copyright COPYONLY)
   string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
   file(WRITE ${folder}/changelog "sheaf (${PROJECT_VERSION}) unstable; urgency=medium
 
@@ -40,8 +40,8 @@ function(sheaf_package component name section description)
 ")
   execute_process(COMMAND gzip -9nf ${folder}/changelog COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${folder}/copyright ${folder}/changelog.gz DESTINATION share/doc/${name} COMPONENT ${component})
-  if(EXISTS ${PROJECT_SOURCE_DIR}/packaging/lintian/${component})
-    file(READ ${PROJECT_SOURCE_DIR}/packaging/lintian/${component} overrides)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/src/packaging/lintian/${component})
+    file(READ ${PROJECT_SOURCE_DIR}/src/packaging/lintian/${component} overrides)
     string(REPLACE "@PACKAGE@" ${name} overrides "${overrides}")
     file(WRITE ${folder}/overrides "${overrides}")
     install(FILES ${folder}/overrides RENAME ${name} DESTINATION share/lintian/overrides COMPONENT ${component})
@@ -97,7 +97,7 @@ there, too.")
     "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${SHEAF_NEXT_PYTHON}), python3-numpy, ${SHEAF_SONAME_PACKAGE} (= ${PROJECT_VERSION})")
   # Compiles the package's files where it is installed, and removes what that made.
   foreach(script postinst prerm)
-    configure_file(${PROJECT_SOURCE_DIR}/packaging/python.${script} ${CMAKE_BINARY_DIR}/packaging/${script} COPYONLY
+    configure_file(${PROJECT_SOURCE_DIR}/src/packaging/python.${script} ${CMAKE_BINARY_DIR}/packaging/${script} COPYONLY
       FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
     list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/packaging/${script})
   endforeach()
