@@ -50,10 +50,7 @@ HWY_INLINE hn::Mask<D> LookAtFlat(D d, const LightData<Real>& light,
   ly = hn::Sub(ey, hn::LoadU(d, surfaces.position_y + i));
   lz = hn::Sub(ez, hn::LoadU(d, surfaces.position_z + i));
   const V squared = Dot(d, lx, ly, lz, lx, ly, lz);
-  const V distance = hn::Sqrt(squared);
-  lx = hn::Div(lx, distance);
-  ly = hn::Div(ly, distance);
-  lz = hn::Div(lz, distance);
+  Normalize(d, lx, ly, lz);
   const V cosine = hn::Neg(Dot(d, lx, ly, lz, hn::Set(d, light.axis[0]), hn::Set(d, light.axis[1]),
                                hn::Set(d, light.axis[2])));
   falloff = hn::Div(squared, cosine);
@@ -73,9 +70,7 @@ HWY_INLINE hn::Mask<D> LookAtSphere(D d, const LightData<Real>& light,
   V ay = hn::Sub(hn::Set(d, light.vector[1]), py);
   V az = hn::Sub(hn::Set(d, light.vector[2]), pz);
   const V squared = Dot(d, ax, ay, az, ax, ay, az), distance = hn::Sqrt(squared);
-  ax = hn::Div(ax, distance);
-  ay = hn::Div(ay, distance);
-  az = hn::Div(az, distance);
+  Normalize(d, ax, ay, az);
   const V square_radius = hn::Set(d, light.extent * light.extent);
   const V sine2 = hn::Div(square_radius, squared);
   const V rest = hn::Sub(one, sine2);
@@ -143,10 +138,8 @@ HWY_INLINE hn::Mask<D> LookAtEmitters(D d, const EmitterView<Real>& emitters,
   const V nz = GatherAt(d, emitters.normal[2], at);
   const V error = hn::Mul(hn::Set(d, kLightRoundoffs<Real>), AbsDot(d, nx, ny, nz, lx, ly, lz));
   const V away = hn::Add(GatherAt(d, emitters.offset, at), error);
-  const V squared = Dot(d, lx, ly, lz, lx, ly, lz), distance = hn::Sqrt(squared);
-  lx = hn::Div(lx, distance);
-  ly = hn::Div(ly, distance);
-  lz = hn::Div(lz, distance);
+  const V squared = Dot(d, lx, ly, lz, lx, ly, lz);
+  Normalize(d, lx, ly, lz);
   const V cosine = Dot(d, lx, ly, lz, nx, ny, nz), size = hn::Abs(cosine);
   const V offset = hn::CopySign(away, cosine);
   ex = hn::Sub(ex, hn::Mul(nx, offset));

@@ -166,19 +166,15 @@ Status ConvertPicture(const ConvertRequest& request) {
     return Usage(
         fmt::format("{}: for scenes, and {} is a picture", *option, PrintablePath(request.input)));
   }
-  const Status known = CheckPictureOutput(request.output, request.format);
-  if (!known) return known;
-  const std::string named = FormatPath(request.output, request.format);
-  if (const Status shown = CheckLook(request.look, named); !shown) return shown;
-  if (request.bits) {
-    if (const Status fits = CheckPictureBits(named, *request.bits); !fits) return fits;
-  }
+  const Status wanted = CheckWritten(request.output, request.format, request.look, request.bits);
+  if (!wanted) return wanted;
   if (const Status writable = CheckWritable(request.output); !writable) return writable;
   Result<ReadPictureResult> read = ReadPicture(request.input);
   if (!read) return read.error();
   ReadPictureResult& picture = read.value();
   const Film& film = picture.film;
   const bool keeps = request.transfer.empty() || request.transfer == "keep";
+  const std::string named = FormatPath(request.output, request.format);
   PictureSpec spec = SpecAsRead(picture, named, request.bits, request.transfer);
   spec.format = request.format;
   const bool is_developed = GivenLookOption(request.look) != nullptr;

@@ -86,13 +86,8 @@ Status CheckGuided(const DenoiseRequest& request, const Film& film) {
 }
 
 Status CheckFiles(const DenoiseRequest& request) {
-  const Status known = CheckPictureOutput(request.output, request.format);
-  if (!known) return known;
-  const std::string named = FormatPath(request.output, request.format);
-  if (const Status shown = CheckLook(request.look, named); !shown) return shown;
-  if (request.bits) {
-    if (const Status fits = CheckPictureBits(named, *request.bits); !fits) return fits;
-  }
+  const Status wanted = CheckWritten(request.output, request.format, request.look, request.bits);
+  if (!wanted) return wanted;
   std::vector<std::string> inputs = {request.input};
   for (const GuideOption& option : GuideOptions(request)) {
     if (!option.path.empty()) inputs.push_back(option.path);

@@ -1,8 +1,18 @@
 #include "src/app/picture_as_read.h"
 
+#include "src/app/choose.h"
+#include "src/app/output_path.h"
 #include "src/formats/picture.h"
 
 namespace sheaf {
+
+Status CheckWritten(const std::string& output, const std::string& format, const LookOptions& look,
+                    std::optional<int> bits) {
+  if (const Status known = CheckPictureOutput(output, format); !known) return known;
+  const std::string named = FormatPath(output, format);
+  if (const Status shown = CheckLook(look, named); !shown) return shown;
+  return bits ? CheckPictureBits(named, *bits) : Status(Done{});
+}
 
 PictureSpec SpecAsRead(const ReadPictureResult& picture, const std::string& named,
                        std::optional<int> bits, const std::string& transfer) {

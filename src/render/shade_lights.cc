@@ -11,22 +11,14 @@ void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceV
                               std::uint32_t count, const ColourOutput<Real>& colours) {
   if (frame_.lights.empty()) return;
   lit_.Reserve(StreamCapacity(count));
-  constexpr std::uint64_t kEnds = FieldBit(&IncidenceView<Real>::end_x) |
-                                  FieldBit(&IncidenceView<Real>::end_y) |
-                                  FieldBit(&IncidenceView<Real>::end_z);
-  constexpr std::uint64_t kColours = FieldBit(&IncidenceView<Real>::r) |
-                                     FieldBit(&IncidenceView<Real>::g) |
-                                     FieldBit(&IncidenceView<Real>::b);
+  incidence_.Reserve(count, incidence_fields_);
   for (std::size_t i = 0; i < frame_.lights.size(); ++i) {
     const LightData<Real>& light = frame_.lights[i];
     if (light.shape == LightShape::kPoint) {
-      incidence_.Reserve(count, ~(kEnds | kColours));
       ShadeOne(light, material, surfaces, {}, count, colours);
       continue;
     }
-    const bool is_emitters = light.shape == LightShape::kEmitters;
-    if (is_emitters && !(material.needs & kNeedsChoice)) continue;
-    incidence_.Reserve(count, is_emitters ? ~std::uint64_t{0} : ~kColours);
+    if (light.shape == LightShape::kEmitters && !(material.needs & kNeedsChoice)) continue;
     const std::uint32_t dimension = kLightDimension + static_cast<std::uint32_t>(i);
     for (std::uint32_t draw = 0; draw < light.samples; ++draw) {
       const SampleView<Real> points = samples_.DrawForSurfaces(dimension, draw, light.samples);

@@ -18,6 +18,21 @@
 
 namespace sheaf {
 
+// The fields of incidences that the lights of a frame ask for, as bits for Stream::Reserve.
+template <typename Real>
+std::uint64_t IncidenceFieldsFor(const FrameView<Real>& frame) {
+  using Fields = IncidenceView<Real>;
+  const auto bits = [](auto... field) { return (FieldBit(field) | ...); };
+  const std::uint64_t ends = bits(&Fields::end_x, &Fields::end_y, &Fields::end_z);
+  const std::uint64_t colours = bits(&Fields::r, &Fields::g, &Fields::b);
+  std::uint64_t fields = ~(ends | colours);
+  for (const LightData<Real>& light : frame.lights) {
+    if (light.shape != LightShape::kPoint) fields |= ends;
+    if (light.shape == LightShape::kEmitters) fields |= colours;
+  }
+  return fields;
+}
+
 // Owns the streams of shadow rays. What it is made with outlives it.
 template <typename Real>
 class LightShader {
@@ -29,6 +44,7 @@ class LightShader {
         samples_(samples),
         rays_(rays),
         clock_(clock),
+        incidence_fields_(IncidenceFieldsFor(frame)),
         passer_(frame, kernels) {}
 
   // Adds to colours[0, count) what each light gives the surfaces that it reaches. Where lights are
@@ -59,8 +75,9 @@ class LightShader {
   RayCounts& rays_;
   PhaseClock& clock_;
 
-  AlignedArray<std::uint32_t> lit_;  // by surface: 1 where the light in work reaches it
-  IncidenceStream<Real> incidence_;  // of the light in work
+  AlignedArray<std::uint32_t> lit_;       // by surface: 1 where the light in work reaches it
+  const std::uint64_t incidence_fields_;  // that the frame's lights ask for
+  IncidenceStream<Real> incidence_;       // of the light in work
   RayStream<Real> shadow_rays_;
   AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
   LightPasser<Real> passer_;

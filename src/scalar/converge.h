@@ -10,12 +10,10 @@
 
 namespace sheaf::scalar {
 
-// Fewer samples tell nothing of their error. From here on a pixel is judged at powers of two, where
-// Sobol's points are spread most evenly.
-inline constexpr std::uint32_t kLeastSamples = kLeastErrorSamples;
-
+// From kLeastErrorSamples on a pixel is judged at powers of two, where Sobol's points are spread
+// most evenly.
 constexpr bool IsJudgedAt(std::uint32_t samples) {
-  return samples >= kLeastSamples && std::has_single_bit(samples);
+  return samples >= kLeastErrorSamples && std::has_single_bit(samples);
 }
 
 // Whether the error of one channel's mean is at most `error`, of colours above 1 as a part of them:
