@@ -12,6 +12,8 @@
 #include "simd/find_medians.h"
 #include "simd/generate_primary.h"
 #include "simd/generate_shadow.h"
+#include "simd/instances_closest.h"
+#include "simd/instances_occluded.h"
 #include "simd/report_target.h"
 #include "simd/sample_texture.h"
 #include "simd/scatter_diffuse.h"
@@ -39,7 +41,9 @@
   X(FaceLight, face_light)             \
   X(GenerateShadow, generate_shadow)   \
   X(FindMedians, find_medians)         \
-  X(FilterNoise, filter_noise)
+  X(FilterNoise, filter_noise)         \
+  X(InstancesClosest, instances_closest) \
+  X(InstancesOccluded, instances_occluded)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).
 #define SHEAF_FAST_KERNELS(X)      \
   X(TraceClosest, trace_closest)   \

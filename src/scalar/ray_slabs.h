@@ -45,9 +45,10 @@ bool FitsWideBoxes(const Ray<Real>& ray) {
          size <= kMaxWideDirection;
 }
 
-// `Real` is that of the slabs.
-template <typename Real, typename RayReal>
-RaySlabs<Real> SlabsOf(const TreeView<RayReal>& tree, const Ray<Real>& ray) {
+// `Real` is that of the slabs, `Tree` anything with `lower` and `upper`. Boxes give way by the part
+// `give` of the ray's reach besides.
+template <typename Real, typename Tree>
+RaySlabs<Real> SlabsOf(const Tree& tree, const Ray<Real>& ray, Real give = 0) {
   const Real least = LargestComponent(ray.direction) * Real(kMinBoxSlope);
   Real reach = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -60,6 +61,7 @@ RaySlabs<Real> SlabsOf(const TreeView<RayReal>& tree, const Ray<Real>& ray) {
     const bool backward = std::signbit(d), steep = std::abs(d) < least;
     Real slack = std::abs(o) * Real(kBoxOriginSlack) + Real(kBoxAbsoluteSlack);
     if (steep) slack += reach * Real(2 * kMinBoxSlope);
+    if (give > 0) slack += reach * give;
     if (backward) slack = -slack;
     box.scale[axis] = 1 / (steep ? std::copysign(least, d) : d);
     box.enter[axis] = -((o + slack) * box.scale[axis]);
@@ -73,13 +75,13 @@ RaySlabs<Real> SlabsOf(const TreeView<RayReal>& tree, const Ray<Real>& ray) {
 
 // The slabs in double of a ray that FitsWideBoxes. They move distances by kBoxFarFactor themselves,
 // because t may be negative: OutwardBy.
-template <typename Real>
-RaySlabs<double> WideSlabsOf(const TreeView<Real>& tree, const Ray<Real>& ray) {
+template <typename Tree, typename Real>
+RaySlabs<double> WideSlabsOf(const Tree& tree, const Ray<Real>& ray, double give = 0) {
   const auto widen = [](Vec3<Real> a) {
     return Vec3<double>{static_cast<double>(a.x), static_cast<double>(a.y),
                         static_cast<double>(a.z)};
   };
-  return SlabsOf(tree, Ray<double>{widen(ray.origin), widen(ray.direction)});
+  return SlabsOf(tree, Ray<double>{widen(ray.origin), widen(ray.direction)}, give);
 }
 
 // The distance t moved later, or with sign -1 earlier, by what box tests allow.

@@ -1,0 +1,33 @@
+// The inside of a public Instances, for those that trace it.
+#ifndef SHEAF_BVH_INSTANCES_ACCESS_H_
+#define SHEAF_BVH_INSTANCES_ACCESS_H_
+
+#include <memory>
+#include <vector>
+
+#include "sheaf/instances.h"
+#include "src/bvh/build_instances.h"
+
+namespace sheaf {
+
+template <typename Real>
+struct InstancesOf<Real>::Data {
+  std::vector<std::shared_ptr<const GeometryOf<Real>>> geometries;
+  InstanceForest<Real> forest;  // over their trees
+};
+
+struct InstancesAccess {
+  template <typename Real>
+  using Data = typename InstancesOf<Real>::Data;
+  // Null: nothing to hit.
+  template <typename Real>
+  static const Data<Real>* DataOf(const InstancesOf<Real>& instances) {
+    return instances.data_.get();
+  }
+};
+
+static_assert(Instances::kNoInstance == kNoInstance);
+
+}  // namespace sheaf
+
+#endif  // SHEAF_BVH_INSTANCES_ACCESS_H_
