@@ -23,11 +23,11 @@
 namespace sheaf::bench {
 namespace {
 
-constexpr float kSameT = 1e-4f;   // relative, and of the unit that instances are apart
+constexpr float kSameT = 1e-4f;  // relative, and of the unit that instances are apart
 
 struct Request {
-  std::uint32_t side = 1000;      // instances along each side of a square
-  std::uint32_t frequency = 59;   // of the mesh: 20 times its square triangles
+  std::uint32_t side = 1000;     // instances along each side of a square
+  std::uint32_t frequency = 59;  // of the mesh: 20 times its square triangles
   std::uint32_t picture = 512;
   int repetitions = 5;
   std::string target = "auto", isa = EmbreeIsa();
@@ -47,7 +47,7 @@ std::vector<Place> Forest(std::uint32_t side) {
       // Scaled by s across and h up, tilted by b, turned by a.
       places.push_back({0,
                         {s * ca, h * sa * sb, s * sa * cb, i - 0.5 * side + number(-0.3, 0.3),  //
-                         0, h * cb, -s * sb, number(0, 1),                                       //
+                         0, h * cb, -s * sb, number(0, 1),                                      //
                          -s * sa, h * ca * sb, s * ca * cb, -1.0 * j + number(-0.3, 0.3)}});
     }
   }
@@ -111,10 +111,10 @@ void TraceSheaf(const Instances& instances, const RayBatch& batch, Target target
         .value();
     return;
   }
-  TraceClosest(instances, ArraysOf(batch.view()), batch.count,
-               {answers.t.data(), answers.primitive.data(), nullptr, answers.u.data(),
-                answers.v.data()},
-               answers.instance.data(), options)
+  TraceClosest(
+      instances, ArraysOf(batch.view()), batch.count,
+      {answers.t.data(), answers.primitive.data(), nullptr, answers.u.data(), answers.v.data()},
+      answers.instance.data(), options)
       .value();
 }
 
@@ -181,23 +181,23 @@ void Compare(const char* name, const Request& request, const Instances& instance
   const Way way = FindBest(rays, scenes, query);
   Answers answers(batch.count), scalar(batch.count);
   EmbreeRays& best = *rays.at(WidthOf(way.call));
-  const auto seconds = Interleave(
-      {{[&] { best.Reset(); }, [&] { best.Trace(way.scene, way.call, way.flags); }},
-       {[] {}, [&] { TraceSheaf(instances, batch, target, query, answers); }}},
-      request.repetitions);
+  const auto seconds =
+      Interleave({{[&] { best.Reset(); }, [&] { best.Trace(way.scene, way.call, way.flags); }},
+                  {[] {}, [&] { TraceSheaf(instances, batch, target, query, answers); }}},
+                 request.repetitions);
   TraceSheaf(instances, batch, Target::Scalar(), query, scalar);
   std::uint32_t differing = 0, other = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
     differing += answers.primitive[i] != scalar.primitive[i] ||
-                 (query == Query::kClosest && (answers.t[i] != scalar.t[i] ||
-                                               answers.instance[i] != scalar.instance[i]));
-    const bool is_hit = query == Query::kClosest ? answers.primitive[i] != kNoPrimitive
-                                                 : answers.primitive[i] != 0;
+                 (query == Query::kClosest &&
+                  (answers.t[i] != scalar.t[i] || answers.instance[i] != scalar.instance[i]));
+    const bool is_hit =
+        query == Query::kClosest ? answers.primitive[i] != kNoPrimitive : answers.primitive[i] != 0;
     const bool embree_hit =
         query == Query::kClosest ? best.t(i) < batch.intervals.all_t_max : best.IsOccluded(i);
-    other += is_hit != embree_hit ||
-             (is_hit && query == Query::kClosest &&
-              std::abs(best.t(i) - answers.t[i]) > kSameT * (1 + answers.t[i]));
+    other +=
+        is_hit != embree_hit || (is_hit && query == Query::kClosest &&
+                                 std::abs(best.t(i) - answers.t[i]) > kSameT * (1 + answers.t[i]));
   }
   const auto mrays = [&](const std::vector<double>& times) {
     std::vector<double> sorted = times;
@@ -218,7 +218,8 @@ int Run(const Request& request) {
   const std::vector<std::shared_ptr<const Geometry>> geometries = {
       std::make_shared<const Geometry>(Geometry::Build(input, 1).value())};
   Instances instances;
-  const double ours = SecondsOf([&] { instances = Instances::Build(geometries, places, 1).value(); });
+  const double ours =
+      SecondsOf([&] { instances = Instances::Build(geometries, places, 1).value(); });
   const EmbreeDevice device(1, request.isa);
   std::unique_ptr<EmbreeForest> medium, high;
   const double theirs = SecondsOf([&] {
@@ -230,8 +231,8 @@ int Run(const Request& request) {
   fmt::print("# Embree {} isa={}; Sheaf on {}; one thread; {} instances of {} triangles\n",
              RTC_VERSION_STRING, request.isa, Target::Named(request.target)->name(), places.size(),
              mesh.triangle_count());
-  fmt::print("# build: Embree {:.2f} s, Sheaf {:.2f} s; bytes an instance: {:.0f}, {:.0f}\n", theirs,
-             ours, held / count, static_cast<double>(instances.statistics().bytes) / count);
+  fmt::print("# build: Embree {:.2f} s, Sheaf {:.2f} s; bytes an instance: {:.0f}, {:.0f}\n",
+             theirs, ours, held / count, static_cast<double>(instances.statistics().bytes) / count);
   fmt::print("{:<9}{:>9}  {:>8} {:<4}{:>8}{:>9}  {}\n", "rays", "count", "Embree", "call", "Sheaf",
              "/Embree", "answers that differ");
   const std::vector<RTCScene> scenes = {medium->get(), high->get()};

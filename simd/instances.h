@@ -9,10 +9,6 @@
 
 namespace sheaf {
 
-// Instances are numbered from 0, below 2^kIndexBits. What belongs to none of them, as the
-// primitives of a scene's own geometry, belongs to kNoInstance.
-inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
-
 // An affine map: row k gives coordinate k, as ((a x + b y) + c z) + d.
 struct AffineMap {
   double row[3][4];
@@ -29,11 +25,11 @@ inline constexpr Real kMinMappedDirection = sizeof(Real) == 4 ? Real(0x1p-100) :
 // A tree as TreeView has it, whose leaves are single instances: LeafFirst is the number of one.
 template <typename Real>
 struct InstanceTree {
-  const TreeNode* nodes;  // the root first
-  std::uint32_t node_count;  // 0: nothing to hit
-  float lower[3], upper[3];  // of all boxes but giants'; lower > upper without any
-  float condition;           // the largest of all maps': of |M| |M^-1|, the largest sum of a row
-  std::uint32_t count;       // of instances
+  const TreeNode* nodes;        // the root first
+  std::uint32_t node_count;     // 0: nothing to hit
+  float lower[3], upper[3];     // of all boxes but giants'; lower > upper without any
+  float condition;              // the largest of all maps': of |M| |M^-1|, the largest sum of a row
+  std::uint32_t count;          // of instances
   const AffineMap* to_object;   // by instance: from the world to the object
   const std::uint32_t* object;  // by instance: position in `trees`
   const TreeView<Real>* trees;  // of the objects

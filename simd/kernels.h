@@ -27,21 +27,21 @@
 
 // The one list of kernels but for those of simd/surfaces.h, each by name and by field of the table.
 // These gain nothing by fast arithmetic, and are compiled once.
-#define SHEAF_STRICT_KERNELS(X)        \
-  X(ReportTarget, report_target)       \
-  X(GeneratePrimary, generate_primary) \
-  X(BlendVertices, blend_vertices)     \
-  X(ChooseLobes, choose_lobes)         \
-  X(DrawFacets, draw_facets)           \
-  X(DrawSamples, draw_samples)         \
-  X(FindFootprints, find_footprints)   \
-  X(SampleTexture, sample_texture)     \
-  X(ScatterDiffuse, scatter_diffuse)   \
-  X(ShadeAmbient, shade_ambient)       \
-  X(FaceLight, face_light)             \
-  X(GenerateShadow, generate_shadow)   \
-  X(FindMedians, find_medians)         \
-  X(FilterNoise, filter_noise)         \
+#define SHEAF_STRICT_KERNELS(X)          \
+  X(ReportTarget, report_target)         \
+  X(GeneratePrimary, generate_primary)   \
+  X(BlendVertices, blend_vertices)       \
+  X(ChooseLobes, choose_lobes)           \
+  X(DrawFacets, draw_facets)             \
+  X(DrawSamples, draw_samples)           \
+  X(FindFootprints, find_footprints)     \
+  X(SampleTexture, sample_texture)       \
+  X(ScatterDiffuse, scatter_diffuse)     \
+  X(ShadeAmbient, shade_ambient)         \
+  X(FaceLight, face_light)               \
+  X(GenerateShadow, generate_shadow)     \
+  X(FindMedians, find_medians)           \
+  X(FilterNoise, filter_noise)           \
   X(InstancesClosest, instances_closest) \
   X(InstancesOccluded, instances_occluded)
 // These are compiled for fast arithmetic once more (CMakeLists.txt).

@@ -14,6 +14,10 @@ inline constexpr std::uint32_t kNoPrimitive = 0x7fffffffu;
 // counts.
 inline constexpr std::uint32_t kInsideBit = 0x80000000u;
 
+// Instances are numbered from 0, below 2^26. What belongs to none of them, as the primitives of a
+// scene's own geometry, belongs to kNoInstance.
+inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
+
 // A hit at t counts where t_min <= t <= t_max and t is finite. By default t_min is the smallest
 // normal number, so that a hit at 0 does not count, whether or not the host flushes denormals to 0;
 // and t_max is the largest finite one.

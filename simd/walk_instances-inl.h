@@ -154,8 +154,7 @@ class InstanceWalk {
                              std::uint32_t i) {
     const D d;
     const auto position = LoadIds(d, group_.position + i);
-    const IdPattern pattern =
-        PatternOf(group_.position + i, LaneCount(d), LaneCount(d));
+    const IdPattern pattern = PatternOf(group_.position + i, LaneCount(d), LaneCount(d));
     const auto take = [&](const Real* from) SHEAF_LAMBDA {
       return Fetch(d, pattern, from, group_.position[i], position);
     };
@@ -184,7 +183,8 @@ class InstanceWalk {
     const V way_slack =
         hn::Mul(reach, hn::Set(d, static_cast<Real>(tree_.condition) * Real(kInstanceSlack)));
     for (int axis = 0; axis < 3; ++axis) {
-      const V o = hn::Load(d, group_.origin[axis] + i), dir = hn::Load(d, group_.direction[axis] + i);
+      const V o = hn::Load(d, group_.origin[axis] + i),
+              dir = hn::Load(d, group_.direction[axis] + i);
       const auto steep = hn::Lt(hn::Abs(dir), least);
       V slack = hn::MulAdd(hn::Abs(o), hn::Set(d, Real(kBoxOriginSlack)),
                            hn::Set(d, Real(kBoxAbsoluteSlack)));
@@ -234,22 +234,21 @@ class InstanceWalk {
   HWY_INLINE std::uint32_t MeetAlone(const TreeNode& node, const SlabRows& rows,
                                      std::uint32_t ray) const {
     const LeafLanes<Real> d;
-    const auto at = [&](std::size_t row, std::uint32_t i, const Real* scale,
-                        const Real* offset) SHEAF_LAMBDA {
-      return hn::MulAdd(LoadPlanes(d, node.bounds[row] + i), hn::Set(d, scale[ray]),
-                        hn::Set(d, offset[ray]));
-    };
+    const auto at = [&](std::size_t row, std::uint32_t i, const Real* scale, const Real* offset)
+                        SHEAF_LAMBDA {
+                          return hn::MulAdd(LoadPlanes(d, node.bounds[row] + i),
+                                            hn::Set(d, scale[ray]), hn::Set(d, offset[ray]));
+                        };
     const auto& [scale, enter, leave] = std::tie(group_.scale, group_.enter, group_.leave);
     const Real last = group_.t_best[ray] * Real(kBoxFarFactor);
     std::uint32_t met = 0;
     for (std::uint32_t i = 0; i < kTreeWidth; i += LaneCount(d)) {
-      const auto in = hn::Max(hn::Max(at(rows.in_x, i, scale[0], enter[0]),
-                                      at(rows.in_y, i, scale[1], enter[1])),
-                              hn::Max(at(rows.in_z, i, scale[2], enter[2]),
-                                      hn::Set(d, group_.t_min[ray])));
-      const auto out = hn::Min(hn::Min(at(rows.out_x, i, scale[0], leave[0]),
-                                       at(rows.out_y, i, scale[1], leave[1])),
-                               at(rows.out_z, i, scale[2], leave[2]));
+      const auto in = hn::Max(
+          hn::Max(at(rows.in_x, i, scale[0], enter[0]), at(rows.in_y, i, scale[1], enter[1])),
+          hn::Max(at(rows.in_z, i, scale[2], enter[2]), hn::Set(d, group_.t_min[ray])));
+      const auto out = hn::Min(
+          hn::Min(at(rows.out_x, i, scale[0], leave[0]), at(rows.out_y, i, scale[1], leave[1])),
+          at(rows.out_z, i, scale[2], leave[2]));
       const auto far = hn::Mul(out, hn::Set(d, Real(kBoxFarFactor)));
       met |= MaskBits(d, hn::Le(in, hn::Min(far, hn::Set(d, last)))) << i;
     }

@@ -1,5 +1,7 @@
 // Geometries in many places: the hits of every target are those of rays against each instance in
 // turn, whatever the map and the ray.
+#include "sheaf/instances.h"
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -12,7 +14,6 @@
 #include <vector>
 
 #include "bits.h"
-#include "sheaf/instances.h"
 #include "src/bvh/build_instances.h"
 #include "src/bvh/geometry_access.h"
 #include "src/bvh/instances_access.h"
@@ -39,8 +40,8 @@ GeometryInput Ball(std::vector<float>& vertices, std::vector<std::uint32_t>& ind
       if (ring == kRings) continue;
       const std::uint32_t at = ring * kSegments + segment;
       const std::uint32_t next = ring * kSegments + (segment + 1) % kSegments;
-      indices.insert(indices.end(), {at, at + kSegments, next, next, at + kSegments,
-                                     next + kSegments});
+      indices.insert(indices.end(),
+                     {at, at + kSegments, next, next, at + kSegments, next + kSegments});
     }
   }
   GeometryInput input;
@@ -129,10 +130,12 @@ struct Rays {
     options.target = target;
     return options;
   }
-  scalar::InstanceRay<Real> at(std::size_t i) const {
-    return {{{numbers[0][i], numbers[1][i], numbers[2][i]},
-             {numbers[3][i], numbers[4][i], numbers[5][i]},
-             source[i], t_min[i], t_max[i]},
+  scalar::Ray<Real> at(std::size_t i) const {
+    return {{numbers[0][i], numbers[1][i], numbers[2][i]},
+            {numbers[3][i], numbers[4][i], numbers[5][i]},
+            source[i],
+            t_min[i],
+            t_max[i],
             source_instance[i]};
   }
 };
@@ -187,17 +190,16 @@ struct Hits {
 
 // Without any tree over instances.
 template <typename Real>
-scalar::InstanceHit<Real> NearestOfEvery(const InstanceTree<Real>& tree,
-                                         const scalar::InstanceRay<Real>& ray) {
-  scalar::Ray<Real> finite = ray.ray;
+scalar::Hit<Real> NearestOfEvery(const InstanceTree<Real>& tree, const scalar::Ray<Real>& ray) {
+  scalar::Ray<Real> finite = ray;
   scalar::MakeFinite(finite);
-  scalar::InstanceHit<Real> nearest = {{finite.t_max}};
+  scalar::Hit<Real> nearest = {finite.t_max};
   if (!scalar::IsTraceable(finite)) return nearest;
   for (std::uint32_t i = 0; i < tree.count; ++i) {
-    const auto hit =
-        scalar::TraceClosest(tree.trees[tree.object[i]], scalar::MapRay(tree, i, ray));
+    auto hit = scalar::TraceClosest(tree.trees[tree.object[i]], scalar::MapRay(tree, i, ray));
     if (hit.primitive == kNoPrimitive) continue;
-    if (nearest.hit.primitive == kNoPrimitive || hit.t < nearest.hit.t) nearest = {hit, i};
+    hit.instance = i;
+    if (nearest.primitive == kNoPrimitive || hit.t < nearest.t) nearest = hit;
   }
   return nearest;
 }
@@ -212,15 +214,15 @@ void CheckAgainstEvery(double reach) {
   // Some start on what others hit.
   for (std::size_t i = 0; i < 800; ++i) {
     const auto hit = NearestOfEvery(tree, rays.at(i));
-    if (hit.hit.primitive == kNoPrimitive) continue;
-    rays.source[i] = hit.hit.primitive;
+    if (hit.primitive == kNoPrimitive) continue;
+    rays.source[i] = hit.primitive;
     rays.source_instance[i] = i % 3 == 0 ? hit.instance + 1 : hit.instance;
   }
-  std::vector<scalar::InstanceHit<Real>> expected;
+  std::vector<scalar::Hit<Real>> expected;
   int hit_count = 0;
   for (std::size_t i = 0; i < rays.count(); ++i) {
     expected.push_back(NearestOfEvery(tree, rays.at(i)));
-    hit_count += expected.back().hit.primitive != kNoPrimitive ? 1 : 0;
+    hit_count += expected.back().primitive != kNoPrimitive ? 1 : 0;
   }
   CHECK(hit_count > 1000);
   CHECK(hit_count < static_cast<int>(rays.count()) - 500);
@@ -237,14 +239,14 @@ void CheckAgainstEvery(double reach) {
                 .ok());
     int differing = 0;
     for (std::size_t i = 0; i < rays.count(); ++i) {
-      const scalar::InstanceHit<Real>& hit = expected[i];
-      const bool is_hit = hit.hit.primitive != kNoPrimitive;
-      differing += !SameBits(hits.t[i], hit.hit.t) || !SameBits(hits.u[i], hit.hit.u) ||
-                   !SameBits(hits.v[i], hit.hit.v) || hits.primitive[i] != hit.hit.primitive ||
+      const scalar::Hit<Real>& hit = expected[i];
+      const bool is_hit = hit.primitive != kNoPrimitive;
+      differing += !SameBits(hits.t[i], hit.t) || !SameBits(hits.u[i], hit.u) ||
+                   !SameBits(hits.v[i], hit.v) || hits.primitive[i] != hit.primitive ||
                    hits.instance[i] != hit.instance || occluded[i] != (is_hit ? 1u : 0u);
       if (is_hit) {
         const auto& geometry = *geometries[places[hit.instance].geometry];
-        differing += hits.object[i] != geometry.object_of(hit.hit.primitive);
+        differing += hits.object[i] != geometry.object_of(hit.primitive);
       } else {
         differing += hits.object[i] != kNoPrimitive;
       }

@@ -173,6 +173,14 @@ json CompleteScene() {
        "material": "m"},
       {"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
                     "uv": [[0, 0], [0.5, 0], [0, 2]]}, "material": "plain"}],
+    "groups": [
+      {"name": "twig", "objects": [
+        {"sphere": {"center": [0, 0, 0], "radius": 1}, "material": "m"}]},
+      {"name": "tree", "instances": [
+        {"name": "left", "group": "twig", "transform": {"translate": [-1, 0, 0]}}]}],
+    "instances": [
+      {"name": "oak", "group": "tree", "transform": [{"scale": [1, 2, 1]}]},
+      {"group": "twig"}],
     "lights": [
       {"name": "l", "point": {"position": [9, 8, 7], "falloff": "linear"}, "colour": [1, 1, 0.5],
        "E0": 100, "reference": [0, 0, 0], "shadows": false},
@@ -206,6 +214,8 @@ json CompleteScene() {
 bool IsBeyondSchema(const std::string& message) {
   for (const char* part : {": no material \"",
                            ": no camera \"",
+                           ": no group \"",
+                           "its transform flattens it",
                            " exists already, from line ",
                            "gives no direction",
                            "looks at its own eye",

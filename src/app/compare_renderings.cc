@@ -12,6 +12,7 @@
 #include "src/formats/printable.h"
 #include "src/lab/object_at.h"
 #include "src/lab/picture_metrics.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
@@ -57,7 +58,7 @@ std::string ObjectName(const Scene& scene, const Camera& camera, const RenderOpt
                        int x, int y) {
   const auto object = ObjectAt(scene, camera, options.width, options.height, x, y);
   if (!object) return "background";
-  const std::string& name = scene.objects[*object].name;
+  const std::string& name = sheaf::ObjectAt(scene, *object).name;
   return name.empty() ? fmt::format("object {}", *object) : fmt::format("\"{}\"", Printable(name));
 }
 

@@ -13,6 +13,7 @@
 #include "src/formats/printable.h"
 #include "src/scene/bounds.h"
 #include "src/scene/develop.h"
+#include "src/scene/shapes.h"
 #include "src/scene/srgb.h"
 
 namespace sheaf {
@@ -74,8 +75,8 @@ Result<std::string> DarkPicture::Explain(const Scene& scene, const Camera& camer
   if (is_empty) return fmt::format("nothing is in view of the camera \"{}\"", name);
   if (is_one) {
     const std::size_t index = static_cast<std::size_t>(first) - 1;
-    const Object& object = scene.objects[index];
-    if (IsInside(object, camera.eye)) {
+    const Object& object = ObjectAt(scene, index);
+    if (index < scene.objects.size() && IsInside(object, camera.eye)) {
       return fmt::format("the eye of the camera \"{}\" lies inside object {}{}", name, index,
                          object.name.empty() ? "" : fmt::format(" \"{}\"", Printable(object.name)));
     }

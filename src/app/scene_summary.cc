@@ -44,18 +44,19 @@ SceneSummary Summarize(const Scene& scene) {
   summary.triangles = counts[PrimitiveKind::kTriangle];
   summary.disks = counts[PrimitiveKind::kDisk];
   std::vector<const Material*> used;
-  for (const Object& object : scene.objects) {
-    used.push_back(&scene.materials[object.material]);
-  }
+  ForEachObject(scene,
+                [&](const Object& object) { used.push_back(&scene.materials[object.material]); });
 
   const auto any_material = [&](auto test) {
     return std::any_of(used.begin(), used.end(), [&](const Material* m) { return test(*m); });
   };
   const auto any_mesh = [&](auto test) {
-    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+    bool is_any = false;
+    ForEachObject(scene, [&](const Object& object) {
       const auto* mesh = std::get_if<Mesh>(&object.shape);
-      return mesh != nullptr && test(*mesh);
+      is_any = is_any || (mesh != nullptr && test(*mesh));
     });
+    return is_any;
   };
   const auto any_light = [&](auto test) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), test);

@@ -10,6 +10,7 @@
 
 #include "src/core/match.h"
 #include "src/formats/printable.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
@@ -56,7 +57,7 @@ bool IsLit(const Scene& scene, const std::set<std::uint32_t>& used) {
 std::vector<std::string> SuspectScene(const Scene& scene) {
   std::vector<std::string> lines;
   std::set<std::uint32_t> used;
-  for (const Object& object : scene.objects) used.insert(object.material);
+  ForEachObject(scene, [&](const Object& object) { used.insert(object.material); });
   if (!used.empty() && !IsLit(scene, used)) {
     lines.push_back(
         "nothing lights the scene: it has no light, no ambient light and nothing that "

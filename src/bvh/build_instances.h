@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "sheaf/error.h"
@@ -13,9 +12,6 @@
 #include "src/core/aligned_array.h"
 
 namespace sheaf {
-
-// A map whose |M| |M^-1| has a larger sum of a row flattens: hits would be too far off.
-inline constexpr double kMaxCondition = 1e6;
 
 // Where an object stands: to the world, with the object's position among the trees.
 struct PlacedObject {
@@ -38,13 +34,6 @@ struct InstanceForest {
   InstanceTree<Real> view() const;
   std::size_t bytes() const;
 };
-
-// "", or what is wrong with a map to the world.
-std::string FaultOf(const AffineMap& to_world);
-
-// The map back, of one that has no fault; and the largest sum of a row of |M| |M^-1|.
-AffineMap InverseOf(const AffineMap& map);
-double ConditionOf(const AffineMap& map, const AffineMap& inverse);
 
 // Maps have no fault, objects are positions in `trees`. A function of its arguments alone, but not
 // of `threads` (0: one a core). What trees point at must outlive the forest.

@@ -65,8 +65,21 @@ GeometryView<Real> GeometryArrays<Real>::view() const {
 }
 
 template <typename Real>
+GeometryView<Real> GeometryArrays<Real>::view(const PrimitiveCounts& first,
+                                              const PrimitiveCounts& end) const {
+  GeometryView<Real> view = this->view();
+  ForEachKind(view, [&](auto& arrays) {
+    const std::uint32_t begin = first[arrays.kKind];
+    arrays.ForEachField(arrays, [&](const Real*& field) { field += begin; });
+    arrays.id += begin;
+    arrays.count = end[arrays.kKind] - begin;
+  });
+  return view;
+}
+
+template <typename Real>
 Status GeometryData<Real>::BuildTree(int threads) {
-  Result<Tree<Real>> built = sheaf::BuildTree(arrays.view(), threads);
+  Result<Tree<Real>> built = sheaf::BuildTree(arrays.view({}, own), threads);
   if (!built) return built.error();
   tree = std::move(built).value();
   return Done{};

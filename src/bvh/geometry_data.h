@@ -43,6 +43,8 @@ class GeometryArrays {
   Real* field(PrimitiveKind kind, std::size_t k) { return kinds_[IndexOf(kind)].fields[k].data(); }
   std::uint32_t* ids(PrimitiveKind kind) { return kinds_[IndexOf(kind)].id.data(); }
   GeometryView<Real> view() const;
+  // Of primitives [first, end) of each kind alone: what a tree is built over.
+  GeometryView<Real> view(const PrimitiveCounts& first, const PrimitiveCounts& end) const;
 
   // Of triangles; empty where unused.
   AlignedArray<Real> uv[3][2], uv2[3][2], normal[3][3], colour[3][3], alpha[3][1];
@@ -60,6 +62,9 @@ template <typename Real>
 struct GeometryData {
   GeometryArrays<Real> arrays;
   Tree<Real> tree;
+
+  // So many primitives of each kind, the first ones, are the tree's; the others are for instances.
+  PrimitiveCounts own;
 
   // Over what the arrays hold, which the tree does not need any more. See BuildTree.
   Status BuildTree(int threads);

@@ -9,11 +9,12 @@
 #include "src/bvh/build_instances.h"
 #include "src/bvh/geometry_access.h"
 #include "src/bvh/instances_access.h"
+#include "src/scene/affine_map.h"
 
 namespace sheaf {
 namespace {
 
-AffineMap MapOf(const Place& place) {
+AffineMap RowsOf(const Place& place) {
   AffineMap map;
   for (std::size_t k = 0; k < 12; ++k) map.row[k / 4][k % 4] = place.to_world[k];
   return map;
@@ -57,7 +58,7 @@ Result<InstancesOf<Real>> InstancesOf<Real>::Build(Geometries geometries,
       return Fault(i, "geometry " + std::to_string(places[i].geometry) + " of " +
                           std::to_string(geometries.size()));
     }
-    AffineMap map = MapOf(places[i]);
+    AffineMap map = RowsOf(places[i]);
     if (const std::string fault = FaultOf(map); !fault.empty()) return Fault(i, fault);
     // Trees are in numbers of their own scale, a power of two.
     const auto scale =
@@ -95,8 +96,8 @@ InstanceStatistics InstancesOf<Real>::statistics() const {
   statistics.instances = static_cast<std::uint32_t>(forest.object.size());
   statistics.geometries = static_cast<std::uint32_t>(data_->geometries.size());
   statistics.nodes = forest.node_count;
-  statistics.bytes += sizeof(Data) + forest.bytes() +
-                      data_->geometries.capacity() * sizeof(data_->geometries[0]);
+  statistics.bytes +=
+      sizeof(Data) + forest.bytes() + data_->geometries.capacity() * sizeof(data_->geometries[0]);
   // Every node comes before its children.
   std::vector<std::uint8_t> level(forest.node_count, 1);
   for (std::uint32_t i = 0; i < forest.node_count; ++i) {

@@ -134,12 +134,12 @@ Status TraceOccluded(const InstancesOf<Real>& instances, const RayArraysOf<Real>
   return Done{};
 }
 
-#define SHEAF_INSTANTIATE(Real)                                                                    \
-  template Status TraceClosest(const InstancesOf<Real>&, const RayArraysOf<Real>&, std::size_t,    \
-                               const HitArraysOf<Real>&, std::uint32_t*,                           \
-                               const TraceOptionsOf<Real>&, const InstanceRayArrays&);             \
-  template Status TraceOccluded(const InstancesOf<Real>&, const RayArraysOf<Real>&, std::size_t,   \
-                                std::uint32_t*, const TraceOptionsOf<Real>&,                       \
+#define SHEAF_INSTANTIATE(Real)                                                                  \
+  template Status TraceClosest(const InstancesOf<Real>&, const RayArraysOf<Real>&, std::size_t,  \
+                               const HitArraysOf<Real>&, std::uint32_t*,                         \
+                               const TraceOptionsOf<Real>&, const InstanceRayArrays&);           \
+  template Status TraceOccluded(const InstancesOf<Real>&, const RayArraysOf<Real>&, std::size_t, \
+                                std::uint32_t*, const TraceOptionsOf<Real>&,                     \
                                 const InstanceRayArrays&)
 SHEAF_INSTANTIATE(float);
 SHEAF_INSTANTIATE(double);

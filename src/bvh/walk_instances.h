@@ -11,32 +11,29 @@ namespace sheaf {
 
 // Ray `i` of arrays, which ends at `t_max`.
 template <typename Real>
-scalar::InstanceRay<Real> InstanceRayAt(const RayView<Real>& rays,
-                                        const std::uint32_t* source_instance,
-                                        const RayIntervals<Real>& intervals, Real t_max,
-                                        std::uint32_t i) {
-  return {{{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-           {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
-           rays.source ? rays.source[i] : kNoPrimitive,
-           intervals.t_min ? intervals.t_min[i] : intervals.all_t_min,
-           t_max},
+scalar::Ray<Real> InstanceRayAt(const RayView<Real>& rays, const std::uint32_t* source_instance,
+                                const RayIntervals<Real>& intervals, Real t_max, std::uint32_t i) {
+  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
+          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+          rays.source ? rays.source[i] : kNoPrimitive,
+          intervals.t_min ? intervals.t_min[i] : intervals.all_t_min,
+          t_max,
           source_instance ? source_instance[i] : kNoInstance};
 }
 
 // The baseline, and what no box test in Real holds for. Contracts as of InstancesClosestKernel.
 template <typename Real>
 void WalkClosestByScalar(const InstanceTree<Real>& tree, const RayView<Real>& rays,
-                         const std::uint32_t* source_instance,
-                         const RayIntervals<Real>& intervals, std::uint32_t i,
-                         const InstanceHits<Real>& hits) {
-  const scalar::InstanceHit<Real> before = {
-      {hits.t[i], hits.primitive[i], hits.u[i], hits.v[i]}, hits.instance[i]};
-  const scalar::InstanceHit<Real> nearest = scalar::TraceClosest(
+                         const std::uint32_t* source_instance, const RayIntervals<Real>& intervals,
+                         std::uint32_t i, const InstanceHits<Real>& hits) {
+  const scalar::Hit<Real> before = {hits.t[i], hits.primitive[i], hits.u[i], hits.v[i],
+                                    hits.instance[i]};
+  const scalar::Hit<Real> nearest = scalar::TraceClosest(
       tree, InstanceRayAt(rays, source_instance, intervals, hits.t[i], i), before);
-  hits.t[i] = nearest.hit.t;
-  hits.u[i] = nearest.hit.u;
-  hits.v[i] = nearest.hit.v;
-  hits.primitive[i] = nearest.hit.primitive;
+  hits.t[i] = nearest.t;
+  hits.u[i] = nearest.u;
+  hits.v[i] = nearest.v;
+  hits.primitive[i] = nearest.primitive;
   hits.instance[i] = nearest.instance;
 }
 
@@ -49,7 +46,7 @@ void WalkClosest(const InstanceTree<Real>& tree, const Kernels<Real>& kernels,
                                                        source_instance, intervals, count, hits);
   for (std::uint32_t i = 0; left > 0 && i < count; ++i) {
     const Real t = hits.t[i];
-    if (scalar::FitsBoxes(InstanceRayAt(rays, source_instance, intervals, t, i).ray)) continue;
+    if (scalar::FitsBoxes(InstanceRayAt(rays, source_instance, intervals, t, i))) continue;
     WalkClosestByScalar(tree, rays, source_instance, intervals, i, hits);
   }
 }
@@ -59,12 +56,12 @@ void WalkOccluded(const InstanceTree<Real>& tree, const Kernels<Real>& kernels,
                   const RayView<Real>& rays, const std::uint32_t* source_instance,
                   const RayIntervals<Real>& intervals, std::uint32_t count,
                   std::uint32_t* occluded) {
-  const std::uint32_t left = kernels.instances_occluded(tree, kernels.trace_occluded, rays,
-                                                        source_instance, intervals, count, occluded);
+  const std::uint32_t left = kernels.instances_occluded(
+      tree, kernels.trace_occluded, rays, source_instance, intervals, count, occluded);
   for (std::uint32_t i = 0; left > 0 && i < count; ++i) {
     const Real t_max = intervals.t_max ? intervals.t_max[i] : intervals.all_t_max;
     const auto ray = InstanceRayAt(rays, source_instance, intervals, t_max, i);
-    if (occluded[i] != 0 || scalar::FitsBoxes(ray.ray)) continue;
+    if (occluded[i] != 0 || scalar::FitsBoxes(ray)) continue;
     occluded[i] = scalar::TraceOccluded(tree, ray) ? 1 : 0;
   }
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "src/formats/format_table.h"
 #include "src/formats/json_cursor.h"
@@ -20,6 +22,7 @@
 #include "src/formats/scene_shapes.h"
 #include "src/formats/scene_transform.h"
 #include "src/formats/scene_values.h"
+#include "src/scene/affine_map.h"
 
 namespace sheaf {
 namespace {
@@ -33,6 +36,24 @@ struct Reading {
   SceneFiles& files() { return source.files; }
 };
 
+// The groups of one file by name. Files that it takes in have groups too, so that a group's place
+// among the scene's is not that among the names.
+class NamedGroups {
+ public:
+  void Add(const std::string& name, const JsonCursor& place, std::size_t group) {
+    names_.Add(name, place);
+    groups_.push_back(static_cast<std::uint32_t>(group));
+  }
+  std::optional<std::uint32_t> Find(const JsonCursor& reference) const {
+    const std::optional<std::uint32_t> found = names_.Find(reference);
+    return found ? std::optional(groups_[*found]) : std::nullopt;
+  }
+
+ private:
+  NameTable names_{"group"};
+  std::vector<std::uint32_t> groups_;  // of the scene
+};
+
 // `materials` is null where they hold an error: a misspelt name there would be blamed on its users.
 std::uint32_t FindMaterial(const JsonCursor& material, const NameTable* materials) {
   if (materials != nullptr) return materials->Find(material).value_or(0);
@@ -41,13 +62,25 @@ std::uint32_t FindMaterial(const JsonCursor& material, const NameTable* material
   return 0;
 }
 
-// Objects, lights, cameras and materials of another file, appended.
+// Objects, instances, lights, cameras and materials of another file, appended. Objects of a scene
+// without materials have those of `to`.
 void Append(Scene&& from, Scene* to) {
-  const auto first_material = static_cast<std::uint32_t>(to->materials.size());
+  const auto first_material =
+      static_cast<std::uint32_t>(from.materials.empty() ? 0 : to->materials.size());
+  const auto first_group = static_cast<std::uint32_t>(to->groups.size());
   for (Material& material : from.materials) to->materials.push_back(std::move(material));
   for (Object& object : from.objects) {
     object.material += first_material;
     to->objects.push_back(std::move(object));
+  }
+  for (Group& group : from.groups) {
+    for (Object& object : group.objects) object.material += first_material;
+    for (Instance& instance : group.instances) instance.group += first_group;
+    to->groups.push_back(std::move(group));
+  }
+  for (Instance& instance : from.instances) {
+    instance.group += first_group;
+    to->instances.push_back(std::move(instance));
   }
   for (Light& light : from.lights) to->lights.push_back(std::move(light));
   for (Camera& camera : from.cameras) {
@@ -101,11 +134,14 @@ void ReadFile(const JsonCursor& file, JsonObject* object, const std::string& nam
       found.objects[i].name = found.objects.size() == 1 ? name : fmt::format("{} {}", name, i + 1);
     }
   }
-  if (!material.present()) return Append(std::move(found), &reading->scene);
-  for (Object& each : found.objects) {
-    each.material = index;
-    reading->scene.objects.push_back(std::move(each));
+  if (material.present()) {
+    found.materials.clear();
+    for (Object& each : found.objects) each.material = index;
+    for (Group& group : found.groups) {
+      for (Object& each : group.objects) each.material = index;
+    }
   }
+  Append(std::move(found), &reading->scene);
 }
 
 void ReadObject(const JsonCursor& value, const NameTable* materials, NameTable* names,
@@ -135,6 +171,50 @@ void ReadObject(const JsonCursor& value, const NameTable* materials, NameTable* 
   }
   object.Finish();
   reading->scene.objects.push_back(std::move(result));
+}
+
+Instance ReadInstance(const JsonCursor& value, const NamedGroups& groups, NameTable* names) {
+  Instance instance;
+  JsonObject object(value);
+  const JsonCursor name = object.Optional("name");
+  if (ReadName(name, &instance.name)) names->Add(instance.name, name);
+  instance.group = groups.Find(object.Required("group")).value_or(0);
+  const JsonCursor moved = object.Optional("transform");
+  const Transform transform = ReadTransform(moved);
+  if (const std::string fault = FaultOf(MapOf(transform)); !fault.empty()) moved.Fail(fault);
+  instance.linear = transform.linear;
+  instance.translation = transform.translation;
+  object.Finish();
+  return instance;
+}
+
+// Objects and instances of groups before this one.
+void ReadGroup(const JsonCursor& value, const NameTable* materials, NamedGroups* groups,
+               Reading* reading) {
+  Group group;
+  JsonObject object(value);
+  const JsonCursor name = object.Required("name");
+  ReadName(name, &group.name);
+  NameTable objects("object"), instances("instance");
+  // What an object brings goes to the scene: it is read as if the group were one.
+  Scene& scene = reading->scene;
+  std::vector<Object> outer = std::exchange(scene.objects, {});
+  std::vector<Instance> outer_instances = std::exchange(scene.instances, {});
+  const std::size_t lights = scene.lights.size(), cameras = scene.cameras.size();
+  const JsonCursor list = object.Optional("objects");
+  list.ForEachElement(
+      [&](const JsonCursor& element) { ReadObject(element, materials, &objects, reading); });
+  if (scene.lights.size() > lights || scene.cameras.size() > cameras) {
+    list.Fail("a group takes no lights or cameras: \"mesh\" leaves out those of a file");
+  }
+  group.objects = std::exchange(scene.objects, std::move(outer));
+  group.instances = std::exchange(scene.instances, std::move(outer_instances));
+  object.Optional("instances").ForEachElement([&](const JsonCursor& element) {
+    group.instances.push_back(ReadInstance(element, *groups, &instances));
+  });
+  object.Finish();
+  groups->Add(group.name, name, scene.groups.size());
+  scene.groups.push_back(std::move(group));
 }
 
 Light ReadNamedLight(const JsonCursor& value, NameTable* names) {
@@ -182,6 +262,13 @@ Scene ReadRoot(const JsonCursor& root, const JsonErrors& errors, const std::stri
   const NameTable* known_materials = errors.first() ? nullptr : &materials;
   object.Optional("objects").ForEachElement(
       [&](const JsonCursor& element) { ReadObject(element, known_materials, &objects, &reading); });
+  NamedGroups groups;
+  object.Optional("groups").ForEachElement(
+      [&](const JsonCursor& element) { ReadGroup(element, known_materials, &groups, &reading); });
+  NameTable instances("instance");
+  object.Optional("instances").ForEachElement([&](const JsonCursor& element) {
+    scene.instances.push_back(ReadInstance(element, groups, &instances));
+  });
   object.Optional("lights").ForEachElement(
       [&](const JsonCursor& element) { scene.lights.push_back(ReadNamedLight(element, &lights)); });
   // Included cameras come after this file's own, of which the first is the default.

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "src/scene/bounds.h"
+#include "src/scene/placed_groups.h"
 
 namespace sheaf {
 namespace {
@@ -33,6 +34,14 @@ constexpr StudioLight kStudio[] = {{"key", 0.75, {-0.6, 0.9, 1.0}, true},
 
 // Calls include(point) for points around which a convex outline holds the scene.
 void ForEachOutlinePoint(const Scene& scene, const std::function<void(const Vec3d&)>& include) {
+  const auto include_corners = [&](const Bounds& box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto side = [&](int axis) {
+        return (corner >> axis & 1) != 0 ? box.max[axis] : box.min[axis];
+      };
+      include({side(0), side(1), side(2)});
+    }
+  };
   for (const Object& object : scene.objects) {
     if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
       for (const auto& corners : mesh->triangles) {
@@ -40,15 +49,9 @@ void ForEachOutlinePoint(const Scene& scene, const std::function<void(const Vec3
       }
       continue;
     }
-    const std::optional<Bounds> box = BoundsOf(object.shape);
-    if (!box) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto side = [&](int axis) {
-        return (corner >> axis & 1) != 0 ? box->max[axis] : box->min[axis];
-      };
-      include({side(0), side(1), side(2)});
-    }
+    if (const std::optional<Bounds> box = BoundsOf(object.shape)) include_corners(*box);
   }
+  ForEachPlacedBox(scene, include_corners);
 }
 
 // The axes of a camera that looks along `ahead`.

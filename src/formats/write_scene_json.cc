@@ -21,6 +21,26 @@ Json ObjectJson(const Scene& scene, const Object& object) {
   return json;
 }
 
+Json InstanceJson(const Scene& scene, const Instance& instance) {
+  const auto row = [&](int k) {
+    const glm::dmat3& m = instance.linear;
+    return Json{m[0][k], m[1][k], m[2][k], instance.translation[k]};
+  };
+  Json json = {{"group", scene.groups[instance.group].name},
+               {"transform", {{"matrix", Json::array({row(0), row(1), row(2)})}}}};
+  if (!instance.name.empty()) json["name"] = instance.name;
+  return json;
+}
+
+Json GroupJson(const Scene& scene, const Group& group) {
+  Json json = {{"name", group.name}, {"objects", Json::array()}};
+  for (const Object& object : group.objects) json["objects"].push_back(ObjectJson(scene, object));
+  for (const Instance& instance : group.instances) {
+    json["instances"].push_back(InstanceJson(scene, instance));
+  }
+  return json;
+}
+
 template <typename T>
 void MakeUnique(std::vector<T>* things, const std::string& otherwise) {
   std::set<std::string> taken;
@@ -44,6 +64,12 @@ void MakeNamesUnique(Scene* scene) {
   MakeUnique(&scene->cameras, "camera");
   MakeUnique(&scene->views, "view");
   MakeUnique(&scene->objects, "");
+  MakeUnique(&scene->instances, "");
+  MakeUnique(&scene->groups, "group");
+  for (Group& group : scene->groups) {
+    MakeUnique(&group.objects, "");
+    MakeUnique(&group.instances, "");
+  }
   MakeUnique(&scene->lights, "");
 }
 
@@ -57,6 +83,10 @@ std::string SceneJsonText(const Scene& scene) {
     json["materials"].push_back(MaterialJson(material));
   }
   for (const Object& object : scene.objects) json["objects"].push_back(ObjectJson(scene, object));
+  for (const Group& group : scene.groups) json["groups"].push_back(GroupJson(scene, group));
+  for (const Instance& instance : scene.instances) {
+    json["instances"].push_back(InstanceJson(scene, instance));
+  }
   for (const Light& light : scene.lights) json["lights"].push_back(LightJson(light));
   for (const Camera& camera : scene.cameras) json["cameras"].push_back(CameraJson(camera));
   for (const View& view : scene.views) {

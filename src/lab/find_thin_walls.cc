@@ -26,6 +26,7 @@ class WallFinder {
     const PrimitiveInfo& info = scene_.objects.primitives[id];
     // What alpha leaves out passes rays too, but bends none.
     if (!AnyPositive(scene_.materials[info.material].transmit)) return;
+    if (info.index() >= scene_.objects.data.own[info.kind()]) return;  // a group's, elsewhere
     const double needed = (offset + kTwoRoundings) * AbsDot(out, p);
     scalar::Ray<double> ray{p, -out, id | kInsideBit};
     ray.t_max = needed;

@@ -18,6 +18,7 @@
 #include "src/core/match.h"
 #include "src/lab/has_program.h"
 #include "src/scene/direction.h"
+#include "src/scene/placed_groups.h"
 
 namespace sheaf {
 namespace {
@@ -305,7 +306,9 @@ Result<PovRender> RenderWithPovRay(const Scene& scene, const Camera& camera, int
   };
   const TemporaryFolder folder;
   if (folder.path().empty()) return failed("no temporary folder");
-  Scene shown = scene;  // PovText takes the aspect from its size
+  Result<Scene> flat = Flattened(scene);
+  if (!flat) return flat.error();
+  Scene shown = std::move(flat).value();  // PovText takes the aspect from its size
   shown.settings.width = width;
   shown.settings.height = height;
   std::ofstream(folder.path() + "/scene.pov") << PovText(shown, camera);

@@ -14,7 +14,7 @@ namespace sheaf {
 // as tests/reference/crystal-ball.pov is: highlights by half vector, Fresnel's split at glass,
 // opaque shadows of glass, the depth limit of the scene's settings. Not exact: a falloff keeps its
 // highest term alone, a texture its factor alone; only quads have checkers; cones of lights and
-// colours of vertices are left out.
+// colours of vertices are left out. So are instances: Flattened of src/scene/placed_groups.h first.
 std::string PovText(const Scene& scene, const Camera& camera);
 
 // Whether `povray` is on the path.
@@ -28,7 +28,7 @@ struct PovRender {
 enum class PovPicture { kNone, kRead };
 
 // Renders PovText on one thread, in a temporary folder. `antialiasing` is POV-Ray's option, such as
-// "-A" or "+A0.3 +R3". Returns kInputOutput where POV-Ray fails.
+// "-A" or "+A0.3 +R3". Fails as Flattened does, and returns kInputOutput where POV-Ray fails.
 Result<PovRender> RenderWithPovRay(const Scene& scene, const Camera& camera, int width, int height,
                                    const std::string& antialiasing, PovPicture picture);
 

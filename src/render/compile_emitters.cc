@@ -90,7 +90,11 @@ void CompileEmitters(const CompiledGeometry<Real>& geometry,
     for (int axis = 0; axis < 3; ++axis) to[axis].push_back(static_cast<Real>(v[axis]));
   };
   for (const PrimitiveInfo& primitive : geometry.primitives) {
-    if (primitive.kind() != PrimitiveKind::kTriangle) continue;
+    // Those of groups stand elsewhere.
+    if (primitive.kind() != PrimitiveKind::kTriangle ||
+        primitive.index() >= geometry.data.own[PrimitiveKind::kTriangle]) {
+      continue;
+    }
     const MaterialData<Real>& material = materials[primitive.material];
     if (!Shines(material)) continue;
     const auto vertex = [&](int corner) {

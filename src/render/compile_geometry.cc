@@ -1,14 +1,21 @@
 #include "src/render/compile_geometry.h"
 
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <map>
+#include <optional>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "src/bvh/build_tree.h"
 #include "src/render/round_corners.h"
+#include "src/scene/affine_map.h"
+#include "src/scene/direction.h"
+#include "src/scene/placed_groups.h"
 #include "src/scene/shapes.h"
 #include "src/scene/textures.h"
 
@@ -26,14 +33,14 @@ VertexAttributes AttributesOf(const Scene& scene) {
       asks_for_second_set |= texture.set == 1;
     });
   }
-  for (const Object& object : scene.objects) {
+  ForEachObject(scene, [&](const Object& object) {
     const auto* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr) continue;
+    if (mesh == nullptr) return;
     attributes.has_normals |= !mesh->normals.empty();
     attributes.has_colours |= !mesh->colours.empty();
     attributes.has_second_set |= asks_for_second_set && !mesh->uv2.empty();
     attributes.has_alphas |= ShowsAlphas(*mesh, scene.materials[object.material]);
-  }
+  });
   return attributes;
 }
 
@@ -42,7 +49,7 @@ template <typename Real>
 class GeometryWriter {
  public:
   GeometryWriter(const Scene& scene, const ScenePlacement& placement, CompiledGeometry<Real>& to)
-      : placement_(placement), attributes_(AttributesOf(scene)), to_(to), arrays_(to.data.arrays) {
+      : placement_(&placement), attributes_(AttributesOf(scene)), to_(to), arrays_(to.data.arrays) {
     const PrimitiveCounts counts = Narrow(CountPrimitives(scene));
     arrays_ = GeometryArrays<Real>(counts, attributes_);
     to_.primitives.reserve(counts.total());
@@ -61,10 +68,20 @@ class GeometryWriter {
       ForEachPrimitive(object.shape,
                        [&](const ShapePrimitive& primitive) { AddPlain(Placed(primitive)); });
     }
-    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(placement_.Point(point)); });
+    ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(placement_->Point(point)); });
+  }
+
+  // What comes next is placed like this.
+  void PlaceBy(const ScenePlacement& placement) { placement_ = &placement; }
+
+  void Include(const Vec3d& point) {
+    bounds_.low = glm::min(bounds_.low, point);
+    bounds_.high = glm::max(bounds_.high, point);
   }
 
   const PointBounds& bounds() const { return bounds_; }
+  // How many primitives there are by now.
+  const PrimitiveCounts& counts() const { return next_; }
 
  private:
   // A primitive that is no mesh's, where it is placed.
@@ -84,7 +101,7 @@ class GeometryWriter {
     for (const auto& corners : mesh.triangles) {
       std::array<double, kMaxFields> vertices;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d vertex = placement_.Point(Vec3d(mesh.positions[corners[k]]));
+        const Vec3d vertex = placement_->Point(Vec3d(mesh.positions[corners[k]]));
         Include(vertex);
         for (int axis = 0; axis < 3; ++axis) vertices[3 * k + axis] = vertex[axis];
       }
@@ -117,10 +134,10 @@ class GeometryWriter {
     std::array<double, kMaxFields>& fields = primitive.fields;
     const bool is_triangle = primitive.kind == PrimitiveKind::kTriangle;
     for (std::size_t at = 0; at < (is_triangle ? 9 : 3); at += 3) {
-      const Vec3d point = placement_.Point({fields[at], fields[at + 1], fields[at + 2]});
+      const Vec3d point = placement_->Point({fields[at], fields[at + 1], fields[at + 2]});
       for (int axis = 0; axis < 3; ++axis) fields[at + axis] = point[axis];
     }
-    if (!is_triangle) fields[3] = placement_.Length(fields[3]);
+    if (!is_triangle) fields[3] = placement_->Length(fields[3]);
     return primitive;
   }
 
@@ -146,12 +163,7 @@ class GeometryWriter {
     }
   }
 
-  void Include(const Vec3d& point) {
-    bounds_.low = glm::min(bounds_.low, point);
-    bounds_.high = glm::max(bounds_.high, point);
-  }
-
-  const ScenePlacement& placement_;
+  const ScenePlacement* placement_;
   std::map<std::uint32_t, std::vector<ShapePrimitive>> rounded_;
   VertexAttributes attributes_;
   CompiledGeometry<Real>& to_;
@@ -161,6 +173,30 @@ class GeometryWriter {
   std::uint32_t object_ = 0, material_ = 0;
 };
 
+// Where a group is computed: near the origin and of moderate size, as scenes are.
+ScenePlacement PlaceGroup(const Group& group) {
+  constexpr double kLeastSize = 0x1p-20, kMostSize = 0x1p36, kMostDistances = 8;
+  ScenePlacement placement;
+  const std::optional<Bounds> bounds = BoundsOf(group);
+  if (!bounds) return placement;
+  const Vec3d half = (bounds->max - bounds->min) * 0.5, middle = bounds->min + half;
+  const double reach = LargestComponent(half);
+  if (!(reach > 0) || !std::isfinite(reach)) return placement;
+  if (LargestComponent(middle) > kMostDistances * reach) placement.origin = middle;
+  if (!(reach >= kLeastSize && reach <= kMostSize)) {
+    placement.scale = std::ldexp(1.0, -std::ilogb(reach));
+  }
+  return placement;
+}
+
+// From where a group is computed to where it stands, as the scene is computed.
+AffineMap PlacedMap(const ScenePlacement& scene, const PlacedGroup& placed,
+                    const ScenePlacement& group) {
+  const Transform& to_world = placed.to_world;
+  return MapOf(
+      {to_world.linear * (scene.scale / group.scale), scene.Point(to_world.Point(group.origin))});
+}
+
 }  // namespace
 
 template <typename Real>
@@ -168,8 +204,47 @@ PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,
                             CompiledGeometry<Real>& to) {
   GeometryWriter<Real> writer(scene, placement, to);
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) writer.Add(i, scene.objects[i]);
-  return writer.bounds();
+  to.data.own = writer.counts();
+  PointBounds bounds = writer.bounds();
+  if (scene.groups.empty()) return bounds;
+  auto number = static_cast<std::uint32_t>(scene.objects.size());
+  std::vector<ScenePlacement> group_placements;
+  group_placements.reserve(scene.groups.size());
+  for (const Group& group : scene.groups) {
+    writer.PlaceBy(group_placements.emplace_back(PlaceGroup(group)));
+    for (const Object& object : group.objects) writer.Add(number++, object);
+    to.group_ends.push_back(writer.counts());
+  }
+  for (const PlacedGroup& placed : PlaceGroups(scene)) {
+    to.places.push_back(
+        {PlacedMap(placement, placed, group_placements[placed.group]), placed.group});
+    to.to_world.push_back(to.places.back().to_world);
+  }
+  ForEachPlacedBox(scene, [&](const Bounds& box) {
+    bounds.low = glm::min(bounds.low, placement.Point(box.min));
+    bounds.high = glm::max(bounds.high, placement.Point(box.max));
+  });
+  return bounds;
 }
+
+template <typename Real>
+Status CompiledGeometry<Real>::BuildTrees(int threads) {
+  if (Status built = data.BuildTree(threads); !built) return built;
+  std::vector<TreeView<Real>> views;
+  PrimitiveCounts first = data.own;
+  group_trees.reserve(group_ends.size());
+  for (const PrimitiveCounts& end : group_ends) {
+    Result<Tree<Real>> built = BuildTree(data.arrays.view(first, end), threads);
+    if (!built) return built.error();
+    views.push_back(group_trees.emplace_back(std::move(built).value()).view());
+    first = end;
+  }
+  if (!places.empty()) forest = BuildInstances<Real>(places, std::move(views), threads);
+  return Done{};
+}
+
+template struct CompiledGeometry<float>;
+template struct CompiledGeometry<double>;
 
 template PointBounds CompileGeometry(const Scene&, const ScenePlacement&, CompiledGeometry<float>&);
 template PointBounds CompileGeometry(const Scene&, const ScenePlacement&,

@@ -19,6 +19,7 @@
 #include "src/scalar/sin_cos.h"
 #include "src/scene/decode_table.h"
 #include "src/scene/projection.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
@@ -303,17 +304,21 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     compiled.materials.push_back(data);
   }
   AddTextureNeeds(compiled);
-  for (const Object& object : scene.objects) {
+  ForEachObject(scene, [&](const Object& object) {
     const auto* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr) continue;
+    if (mesh == nullptr) return;
     std::uint32_t& needs = compiled.materials[object.material].needs;
     if (!mesh->normals.empty()) needs |= kNeedsNormals;
     if (!mesh->colours.empty()) needs |= kNeedsTint;
     if (ShowsAlphas(*mesh, scene.materials[object.material])) needs |= kNeedsVertexAlpha;
-  }
+  });
   for (const Light& light : scene.lights) {
     compiled.lights.push_back(CompileLight<Real>(light, scene.settings, placement, bounds));
-    if (integrator == Integrator::kWhitted) ShrinkToMiddle(compiled.lights.back());
+    LightData<Real>& data = compiled.lights.back();
+    if (integrator == Integrator::kWhitted) ShrinkToMiddle(data);
+    // The end of a ray that is mapped into an object errs more than its start.
+    const bool is_from_light = data.kind == LightKind::kPointFromLight;
+    if (is_from_light && !compiled.objects.places.empty()) data.kind = LightKind::kPointFromSurface;
   }
   if (integrator == Integrator::kPath) AddEmitters(compiled);
   if (compiled.lights.empty()) {

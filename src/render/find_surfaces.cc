@@ -35,8 +35,8 @@ void MeasureFootprints(const FrameView<Real>& frame, const Kernels<Real>& kernel
 template <typename Real>
 SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels,
                                const HitBin& bin, const RayBatch<Real>& batch,
-                               const HitView<Real>& hits, SurfaceStream<Real>& surfaces,
-                               const TexelOutput<Real>& texels) {
+                               const HitView<Real>& hits, const InstancedHits<Real>& instanced,
+                               SurfaceStream<Real>& surfaces, const TexelOutput<Real>& texels) {
   const MaterialData<Real>& material = frame.materials[bin.material];
   const SurfaceOutput<Real> output = surfaces.output();
   bool has_faces = false;
@@ -56,19 +56,22 @@ SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>
   if (material.needs & kNeedsWidth) {
     const ConeView<Real> cones = {batch.paths.width, frame.cone.width, frame.cone.spread};
     MeasureFootprints(frame, kernels, bin, cones, hits, view, output);
+    instanced.StretchFootprints(bin, output);
   }
   if (material.needs & kNeedsTint) TintSurfaces(frame, kernels, bin, view, texels, output);
   if (has_faces && material.finish.normals != kNoTexture) {
     BumpSurfaces(frame, kernels, bin, view, texels, output);
   }
+  instanced.Place(bin, view, output);
   if (material.needs & kNeedsTerms) FinishSurfaces(frame, kernels, bin, view, texels, output);
   return view;
 }
 
-#define SHEAF_INSTANTIATE(Real)                                                           \
-  template SurfaceView<Real> FindSurfaces(                                                \
-      const FrameView<Real>&, const Kernels<Real>&, const HitBin&, const RayBatch<Real>&, \
-      const HitView<Real>&, SurfaceStream<Real>&, const TexelOutput<Real>&);
+#define SHEAF_INSTANTIATE(Real)                                                             \
+  template SurfaceView<Real> FindSurfaces(const FrameView<Real>&, const Kernels<Real>&,     \
+                                          const HitBin&, const RayBatch<Real>&,             \
+                                          const HitView<Real>&, const InstancedHits<Real>&, \
+                                          SurfaceStream<Real>&, const TexelOutput<Real>&);
 SHEAF_INSTANTIATE(float)
 SHEAF_INSTANTIATE(double)
 #undef SHEAF_INSTANTIATE

@@ -5,6 +5,7 @@
 #include "simd/kernels.h"
 #include "simd/streams.h"
 #include "src/render/bin_hits.h"
+#include "src/render/instanced_hits.h"
 #include "src/render/ray_queue.h"
 #include "src/stream/frame_view.h"
 #include "src/stream/stream.h"
@@ -58,12 +59,13 @@ constexpr std::uint64_t TexelFieldsFor(std::uint32_t needs, std::size_t textures
 }
 
 // Writes the surfaces of the bin's hits to surfaces[0, bin.batch.count), as far as the bin's
-// material needs them, and returns what to read them through. Leaves in `texels` what textures say.
+// material needs them, and returns what to read them through. `batch` has rays as what they hit
+// sees them, and `instanced` takes surfaces from there. Leaves in `texels` what textures say.
 template <typename Real>
 SurfaceView<Real> FindSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels,
                                const HitBin& bin, const RayBatch<Real>& batch,
-                               const HitView<Real>& hits, SurfaceStream<Real>& surfaces,
-                               const TexelOutput<Real>& texels);
+                               const HitView<Real>& hits, const InstancedHits<Real>& instanced,
+                               SurfaceStream<Real>& surfaces, const TexelOutput<Real>& texels);
 
 }  // namespace sheaf
 

@@ -12,6 +12,13 @@
 
 namespace sheaf {
 
+// Shadow rays, and the instances that their sources belong to where a frame has any.
+template <typename Real>
+struct ShadowRays {
+  RayView<Real> rays;
+  const std::uint32_t* source_instances;
+};
+
 // Owns the streams of such rays. What it is made with outlives it.
 template <typename Real>
 class LightPasser {
@@ -22,11 +29,13 @@ class LightPasser {
   // What arrives along each shadow ray: shares[0, count) are 1 where `occluded` is 0, else what
   // the surfaces on the way let pass. Bits: as sheaf::scalar::LightShare. One round of tracing a
   // surface on the way; what each lets pass is found ray by ray.
-  void Pass(const RayView<Real>& rays, Real t_max, const std::uint32_t* occluded,
+  void Pass(const ShadowRays<Real>& shadow, Real t_max, const std::uint32_t* occluded,
             std::uint32_t count, const ColourOutput<Real>& shares);
 
   std::size_t bytes() const {
-    return rays_.bytes() + hits_.bytes() + ray_of_.capacity() * sizeof(std::uint32_t);
+    return rays_.bytes() + hits_.bytes() +
+           (ray_of_.capacity() + source_instances_.capacity() + instances_.capacity()) *
+               sizeof(std::uint32_t);
   }
 
  private:
@@ -34,7 +43,8 @@ class LightPasser {
   const Kernels<Real>& kernels_;
   RayStream<Real> rays_;  // on their way
   HitStream<Real> hits_;
-  std::vector<std::uint32_t> ray_of_;  // the shadow ray of each
+  std::vector<std::uint32_t> ray_of_;                        // the shadow ray of each
+  std::vector<std::uint32_t> source_instances_, instances_;  // of each ray and of its hit
 };
 
 }  // namespace sheaf

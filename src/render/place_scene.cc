@@ -10,6 +10,7 @@
 #include "src/render/round_corners.h"
 #include "src/scene/bounds.h"
 #include "src/scene/direction.h"
+#include "src/scene/placed_groups.h"
 
 namespace sheaf {
 namespace {
@@ -58,13 +59,15 @@ ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
   ScenePlacement placement;
   Viewpoint view;
   std::optional<Bounds> all;
-  for (const Object& object : scene.objects) {
-    const std::optional<Bounds> bounds = BoundsOf(object.shape);
-    if (!bounds) continue;
-    Approach(camera, *bounds, view);
+  const auto include = [&](const Bounds& bounds) {
+    Approach(camera, bounds, view);
     if (!all) all = bounds;
-    *all = {glm::min(all->min, bounds->min), glm::max(all->max, bounds->max)};
+    *all = {glm::min(all->min, bounds.min), glm::max(all->max, bounds.max)};
+  };
+  for (const Object& object : scene.objects) {
+    if (const std::optional<Bounds> bounds = BoundsOf(object.shape)) include(*bounds);
   }
+  ForEachPlacedBox(scene, include);
   if (!(view.distance > 0) || !std::isfinite(view.distance)) return placement;
   placement.nearest = view.distance;
   if (LargestComponent(view.place) > kMostDistances * view.distance)

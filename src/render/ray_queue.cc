@@ -41,7 +41,7 @@ void ParentOrder<Real>::Apply(const RayOutput<Real>& rays, const PathOutput<Real
 
 template <typename Real>
 void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ChildKind kind,
-                                   ParentOrder<Real>& order) {
+                                   const std::uint32_t* hit_instances, ParentOrder<Real>& order) {
   const std::uint32_t spawned = count_ - first_;
   const PathOutput<Real> paths = paths_.output(first_);
   // One bin leaves its rays in the order of their parents; several have to be merged into it.
@@ -49,6 +49,9 @@ void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ChildKind kind
   const std::uint32_t* pixel = parents.paths.pixel;
   for (std::uint32_t i = 0; i < spawned; ++i) {
     paths.pixel[i] = pixel ? pixel[paths.parent[i]] : paths.parent[i];
+  }
+  for (std::uint32_t i = 0; hit_instances && i < spawned; ++i) {
+    source_instances_.push_back(hit_instances[paths.parent[i]]);
   }
   const std::uint32_t* seed = parents.paths.seed;
   if (!seed || !paths.seed) return;

@@ -18,6 +18,8 @@ struct RayBatch {
   // Null pointers but for the seed: ray i is of pixel i, with a throughput of 1.
   PathView<Real> paths;
   std::uint32_t count = 0;
+  // Those that the rays' sources belong to; null where there are none.
+  const std::uint32_t* source_instances = nullptr;
 };
 
 // The fields of paths in frames whose materials have `needs`, as bits for Stream::Reserve; diffuse
@@ -80,6 +82,7 @@ class RayQueue {
   void Reset(std::uint32_t n) {
     count_ = 0;
     most_ = n;
+    source_instances_.clear();
   }
   // Makes room for them: before the first is written, so that scenes without such rays have no
   // memory for them. `path_fields` are those of PathFieldsFor.
@@ -101,17 +104,25 @@ class RayQueue {
     bins_ += spawned > 0;
   }
   // Gives the rays since StartParents their pixels, the order of their parents and, where those
-  // have any, seeds.
-  void FinishParents(const RayBatch<Real>& parents, ChildKind kind, ParentOrder<Real>& order);
+  // have any, seeds. `hit_instances`: what the parents hit, null where no frame has instances.
+  void FinishParents(const RayBatch<Real>& parents, ChildKind kind,
+                     const std::uint32_t* hit_instances, ParentOrder<Real>& order);
 
   std::uint32_t count() const { return count_; }
-  std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }
-  RayBatch<Real> batch() const { return {rays_.view(), paths_.view(), count_}; }
+  std::size_t bytes() const {
+    return rays_.bytes() + paths_.bytes() + source_instances_.capacity() * sizeof(std::uint32_t);
+  }
+  RayBatch<Real> batch() const {
+    const bool has_instances = !source_instances_.empty();
+    return {rays_.view(), paths_.view(), count_,
+            has_instances ? source_instances_.data() : nullptr};
+  }
   PathOutput<Real> paths() { return paths_.output(); }
 
  private:
   RayStream<Real> rays_;
   PathStream<Real> paths_;
+  std::vector<std::uint32_t> source_instances_;
   std::uint32_t count_ = 0, most_ = 0;
   std::uint32_t first_ = 0;  // ray of the parents in work
   int bins_ = 0;             // of the parents in work that have rays

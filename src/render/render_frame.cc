@@ -60,7 +60,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
     for (MaterialData<Real>& material : compiled.materials) material.needs |= kNeedsAll;
   }
   GeometryData<Real>& geometry = compiled.objects.data;
-  if (const Status built = geometry.BuildTree(options.threads); !built.ok()) {
+  if (const Status built = compiled.objects.BuildTrees(options.threads); !built.ok()) {
     return Error{ErrorKind::kScene, built.error().message};
   }
   const PixelFilter filter = scene.settings.filter;
@@ -93,6 +93,8 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
       std::any_of(compiled.materials.begin(), compiled.materials.end(),
                   [](const MaterialData<Real>& material) { return material.attenuates; }),
       static_cast<Real>(1 / placement.scale)};
+  frame->view.instances = compiled.objects.forest.view();
+  frame->view.to_world = compiled.objects.to_world.data();
   if (integrator == Integrator::kWhitted) frame->view.camera.lens = LensUse::kNone;
   frame->view.error = static_cast<Real>(options.error.value_or(0));
   frame->view.follows_paths = integrator == Integrator::kPath;

@@ -2,14 +2,17 @@
 
 #include "simd/query.h"
 #include "simd/sample_terms.h"
+#include "src/bvh/walk_instances.h"
 #include "src/scalar/pass_light.h"
 
 namespace sheaf {
 
 template <typename Real>
 void LightShader<Real>::Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-                              std::uint32_t count, const ColourOutput<Real>& colours) {
+                              const std::uint32_t* instances, std::uint32_t count,
+                              const ColourOutput<Real>& colours) {
   if (frame_.lights.empty()) return;
+  instances_ = instances;
   lit_.Reserve(StreamCapacity(count));
   incidence_.Reserve(count, incidence_fields_);
   for (std::size_t i = 0; i < frame_.lights.size(); ++i) {
@@ -61,8 +64,7 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
   rays_.shadow += size;
   RayIntervals<Real> intervals;
   if (light.kind != LightKind::kDirectional) intervals.all_t_max = 1;
-  kernels_.trace_occluded(frame_.tree, shadow_rays_.view(), intervals, size, Coherence::kUnknown,
-                          occluded_.data());
+  TraceShadows(surfaces, intervals, size);
   // Rays find lamps behind glass themselves.
   if (frame_.passes_light && light.shape != LightShape::kEmitters) {
     return FindShares(light, size, count);
@@ -79,13 +81,29 @@ std::uint32_t LightShader<Real>::FindShadows(const LightData<Real>& light,
 }
 
 template <typename Real>
+void LightShader<Real>::TraceShadows(const SurfaceView<Real>& surfaces,
+                                     const RayIntervals<Real>& intervals, std::uint32_t count) {
+  const RayView<Real> rays = shadow_rays_.view();
+  kernels_.trace_occluded(frame_.tree, rays, intervals, count, Coherence::kUnknown,
+                          occluded_.data());
+  if (!frame_.has_instances()) return;
+  source_instances_.Reserve(StreamCapacity(count));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    source_instances_[i] = instances_[surfaces.ray[surface_of_ray_[i]]];
+  }
+  WalkOccluded(frame_.instances, kernels_, rays, source_instances_.data(), intervals, count,
+               occluded_.data());
+}
+
+template <typename Real>
 std::uint32_t LightShader<Real>::FindShares(const LightData<Real>& light, std::uint32_t rays,
                                             std::uint32_t count) {
   shares_.Reserve(count);
   ray_shares_.Reserve(rays);
   const ColourOutput<Real> by_ray = ray_shares_.output(), by_surface = shares_.output();
   const Real t_max = light.kind == LightKind::kDirectional ? kDefaultTMax<Real> : Real(1);
-  passer_.Pass(shadow_rays_.view(), t_max, occluded_.data(), rays, by_ray);
+  passer_.Pass({shadow_rays_.view(), source_instances_.data()}, t_max, occluded_.data(), rays,
+               by_ray);
   std::uint32_t lit = 0;
   for (std::uint32_t i = 0; i < rays; ++i) {
     const std::uint32_t surface = rays == count ? i : surface_of_ray_[i];

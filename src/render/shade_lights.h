@@ -48,12 +48,15 @@ class LightShader {
         passer_(frame, kernels) {}
 
   // Adds to colours[0, count) what each light gives the surfaces that it reaches. Where lights are
-  // drawn from, `samples` has been told of the surfaces.
+  // drawn from, `samples` has been told of the surfaces. `instances`: what the surfaces' rays hit,
+  // null where no frame has instances.
   void Shade(const MaterialData<Real>& material, const SurfaceView<Real>& surfaces,
-             std::uint32_t count, const ColourOutput<Real>& colours);
+             const std::uint32_t* instances, std::uint32_t count,
+             const ColourOutput<Real>& colours);
   std::size_t bytes() const {
     return passer_.bytes() + shares_.bytes() + ray_shares_.bytes() + lit_.bytes() +
-           incidence_.bytes() + shadow_rays_.bytes() + surface_of_ray_.bytes() + occluded_.bytes();
+           incidence_.bytes() + shadow_rays_.bytes() + surface_of_ray_.bytes() + occluded_.bytes() +
+           source_instances_.bytes();
   }
 
  private:
@@ -65,6 +68,10 @@ class LightShader {
   // Returns how many surfaces the light reaches.
   std::uint32_t FindShadows(const LightData<Real>& light, const SurfaceView<Real>& surfaces,
                             std::uint32_t count);
+
+  // Whether anything lies on the way of shadow rays [0, count), into occluded_.
+  void TraceShadows(const SurfaceView<Real>& surfaces, const RayIntervals<Real>& intervals,
+                    std::uint32_t count);
 
   // The same where surfaces let light pass, from what FindShadows left by ray.
   std::uint32_t FindShares(const LightData<Real>& light, std::uint32_t rays, std::uint32_t count);
@@ -79,7 +86,8 @@ class LightShader {
   const std::uint64_t incidence_fields_;  // that the frame's lights ask for
   IncidenceStream<Real> incidence_;       // of the light in work
   RayStream<Real> shadow_rays_;
-  AlignedArray<std::uint32_t> surface_of_ray_, occluded_;  // by shadow ray
+  AlignedArray<std::uint32_t> surface_of_ray_, occluded_, source_instances_;  // by shadow ray
+  const std::uint32_t* instances_ = nullptr;  // by ray that hit a surface
   LightPasser<Real> passer_;
   // Where surfaces let light pass: the share of it that arrives, by surface and by ray.
   ColourStream<Real> shares_, ray_shares_;

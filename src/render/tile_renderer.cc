@@ -70,8 +70,7 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
   for (RayQueue<Real>& queue : next_queues_) queue.Reset(pixels.count);
   const RayBatch<Real> primary =
       primary_.batch(frame_.is_distributed ? samples_.pixel_seeds() : nullptr);
-  Trace(primary);
-  Shade(primary, 0, sample_, recorder);
+  Shade(primary, Trace(primary), 0, sample_, recorder);
   for (int depth = 1;; ++depth) {
     std::swap(queues_, next_queues_);
     std::uint32_t spawned = 0;
@@ -90,11 +89,11 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
       const RayBatch<Real> batch = queue.batch();
       if (batch.count == 0) continue;
       ray_colours_.Reserve(batch.count);
-      Trace(batch);
+      const RayBatch<Real> seen = Trace(batch);
       if (frame_.attenuates) {
         AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue.paths());
       }
-      Shade(batch, depth, ray_colours_, nullptr);
+      Shade(batch, seen, depth, ray_colours_, nullptr);
       AccumulateColours(ray_colours_.view(), batch.paths, batch.count, sample_.output());
       clock_.Charge(Phase::kAccumulate);
     }
@@ -116,49 +115,53 @@ void TileRenderer<Real>::GeneratePrimary(const PixelList<Real>& pixels, std::siz
 }
 
 template <typename Real>
-void TileRenderer<Real>::Trace(const RayBatch<Real>& batch) {
+RayBatch<Real> TileRenderer<Real>::Trace(const RayBatch<Real>& batch) {
   hits_.Reserve(batch.count);
   kernels_.trace_closest(frame_.tree, batch.rays, {}, batch.count, Coherence::kUnknown,
                          hits_.output());
+  const RayBatch<Real> seen = instanced_.Trace(batch, hits_.output());
   clock_.Charge(Phase::kTrace, batch.count, batch.count);
   binner_.Bin(hits_.view().primitive, batch.count, frame_.primitives);
   clock_.Charge(Phase::kBin);
+  return seen;
 }
 
 template <typename Real>
-void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, int depth, ColourStream<Real>& colours,
-                               FirstHitRecorder<Real>* recorder) {
-  const ColourOutput<Real> seen = colours.output();
-  FillEnvironment(frame_, batch.rays, binner_.missed_rays(), batch.count, seen);
+void TileRenderer<Real>::Shade(const RayBatch<Real>& batch, const RayBatch<Real>& seen, int depth,
+                               ColourStream<Real>& colours, FirstHitRecorder<Real>* recorder) {
+  const ColourOutput<Real> all = colours.output();
+  FillEnvironment(frame_, batch.rays, binner_.missed_rays(), batch.count, all);
   for (RayQueue<Real>& queue : next_queues_) queue.StartParents();
   for (const HitBin& bin : binner_.bins()) {
     const MaterialData<Real>& material = frame_.materials[bin.material];
     const std::uint32_t count = bin.batch.count;
     surfaces_.Reserve(batch.count, surface_fields_);
     texels_.Reserve(batch.count, texel_fields_);
-    const SurfaceView<Real> surfaces =
-        FindSurfaces(frame_, kernels_, bin, batch, hits_.view(), surfaces_, texels_.output());
+    const SurfaceView<Real> surfaces = FindSurfaces(frame_, kernels_, bin, seen, hits_.view(),
+                                                    instanced_, surfaces_, texels_.output());
     if (recorder) recorder->Record(bin, hits_.view(), surfaces);
     clock_.Charge(Phase::kSurface, count, count);
     // Where all rays met alike, surfaces stand in the order of rays.
     const bool is_all = count == batch.count;
     if (!is_all) surface_colours_.Reserve(batch.count);
-    const ColourOutput<Real> shaded = is_all ? seen : surface_colours_.output();
+    const ColourOutput<Real> shaded = is_all ? all : surface_colours_.output();
     kernels_.shade_ambient(material, surfaces, count, shaded);
     if (batch.paths.density && material.emitter_density > 0 &&
         bin.kind == PrimitiveKind::kTriangle) {
-      WeighEmission(material, batch, hits_.view(), surfaces, count, shaded);
+      WeighEmission(material, batch, hits_.view(), instanced_.instances(), surfaces, count, shaded);
     }
     clock_.Charge(Phase::kShade, count, count);
     if (frame_.is_distributed) samples_.StartSurfaces(batch.paths, surfaces, count);
     if (material.needs & kNeedsChildren) ChooseRays(batch.paths, depth, material, surfaces, count);
-    if (material.needs & kNeedsLights) lights_.Shade(material, surfaces, count, shaded);
-    if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, seen);
+    if (material.needs & kNeedsLights)
+      lights_.Shade(material, surfaces, instanced_.instances(), count, shaded);
+    if (!is_all) ScatterColours(surface_colours_.view(), bin.batch, all);
     clock_.Charge(Phase::kAccumulate);
     if (material.needs & kNeedsChildren) Spawn(batch.paths, material, surfaces, count);
   }
   for (std::size_t i = 0; i < kChildKinds; ++i) {
-    next_queues_[i].FinishParents(batch, static_cast<ChildKind>(i), parent_order_);
+    next_queues_[i].FinishParents(batch, static_cast<ChildKind>(i), instanced_.instances(),
+                                  parent_order_);
   }
   clock_.Charge(Phase::kSpawn);
 }
@@ -276,8 +279,8 @@ template <typename Real>
 std::size_t TileRenderer<Real>::buffer_bytes() const {
   std::size_t sum = 0;
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
-  add(binner_, samples_, lights_, order_, sample_, means_, converging_, first_hits_, edges_,
-      primary_);
+  add(binner_, instanced_, samples_, lights_, order_, sample_, means_, converging_, first_hits_,
+      edges_, primary_);
   for (const auto& queues : {std::span(queues_), std::span(next_queues_)}) {
     for (const RayQueue<Real>& queue : queues) add(queue);
   }
@@ -302,6 +305,7 @@ TileRenderer<Real>::TileRenderer(const FrameView<Real>& frame, const Kernels<Rea
       texel_fields_(TexelFieldsFor<Real>(NeedsOfAny(frame), frame.textures.size())),
       path_fields_(PathFieldsFor<Real>(NeedsOfAny(frame))),
       binner_(frame.materials.size()),
+      instanced_(frame, kernels_),
       samples_(kernels_),
       lights_(frame, kernels_, samples_, rays_, clock_),
       first_hits_(frame, options.layers) {}

@@ -13,6 +13,7 @@
 #include "src/render/average_samples.h"
 #include "src/render/bin_hits.h"
 #include "src/render/find_edges.h"
+#include "src/render/instanced_hits.h"
 #include "src/render/pixel_order.h"
 #include "src/render/ray_queue.h"
 #include "src/render/record_first_hits.h"
@@ -46,11 +47,11 @@ class TileRenderer : public TileWorker {
   void RenderSample(const PixelList<Real>& pixels, std::size_t sample,
                     FirstHitRecorder<Real>* recorder);
   void GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample);
-  // Leaves hits_ and the bins.
-  void Trace(const RayBatch<Real>& batch);
-  // What was traced last, rays of this depth.
-  void Shade(const RayBatch<Real>& batch, int depth, ColourStream<Real>& colours,
-             FirstHitRecorder<Real>* recorder);
+  // Leaves hits_ and the bins. Returns the batch with each ray as what it hits sees it.
+  RayBatch<Real> Trace(const RayBatch<Real>& batch);
+  // What was traced last, rays of this depth; `seen` is what Trace returned.
+  void Shade(const RayBatch<Real>& batch, const RayBatch<Real>& seen, int depth,
+             ColourStream<Real>& colours, FirstHitRecorder<Real>* recorder);
   // By which facets surfaces send rays on and, of paths, which of these are followed.
   void ChooseRays(const PathView<Real>& parents, int depth, const MaterialData<Real>& material,
                   const SurfaceView<Real>& surfaces, std::uint32_t count);
@@ -71,6 +72,7 @@ class TileRenderer : public TileWorker {
   const std::uint64_t surface_fields_, texel_fields_,
       path_fields_;  // that the frame's materials read
   HitBinner binner_;
+  InstancedHits<Real> instanced_;
   SampleSource<Real> samples_;
   LightShader<Real> lights_;
 

@@ -9,11 +9,13 @@
 namespace sheaf {
 
 // Multiplies colours[0, count), what surfaces of triangles show by themselves, by the weight of the
-// diffuse rays that met them. Surface by surface: rays that meet a lamp are few.
+// diffuse rays that met them. Surface by surface: rays that meet a lamp are few. `instances`: by
+// ray, what it hit; null where no frame has instances.
 template <typename Real>
 void WeighEmission(const MaterialData<Real>& material, const RayBatch<Real>& batch,
-                   const HitView<Real>& hits, const SurfaceView<Real>& surfaces,
-                   std::uint32_t count, const ColourOutput<Real>& colours);
+                   const HitView<Real>& hits, const std::uint32_t* instances,
+                   const SurfaceView<Real>& surfaces, std::uint32_t count,
+                   const ColourOutput<Real>& colours);
 
 }  // namespace sheaf
 

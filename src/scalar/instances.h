@@ -13,19 +13,6 @@
 
 namespace sheaf::scalar {
 
-// A ray, and the instance that its source is of.
-template <typename Real>
-struct InstanceRay {
-  Ray<Real> ray;
-  std::uint32_t source_instance = kNoInstance;
-};
-
-template <typename Real>
-struct InstanceHit {
-  Hit<Real> hit;
-  std::uint32_t instance = kNoInstance;
-};
-
 // The direction is turned alone. In the wide type, of which maps have the doubles.
 template <typename Real>
 Vec3<Real> MapDirection(const AffineMap& map, Vec3<Real> direction) {
@@ -49,14 +36,13 @@ Vec3<Real> MapPoint(const AffineMap& map, Vec3<Real> point) {
 
 // The ray as the object of an instance sees it.
 template <typename Real>
-Ray<Real> MapRay(const InstanceTree<Real>& tree, std::uint32_t instance,
-                 const InstanceRay<Real>& ray) {
+Ray<Real> MapRay(const InstanceTree<Real>& tree, std::uint32_t instance, const Ray<Real>& ray) {
   const AffineMap& map = tree.to_object[instance];
-  Ray<Real> mapped = ray.ray;
-  mapped.origin = MapPoint(map, ray.ray.origin);
-  mapped.direction = MapDirection(map, ray.ray.direction);
+  Ray<Real> mapped = ray;
+  mapped.origin = MapPoint(map, ray.origin);
+  mapped.direction = MapDirection(map, ray.direction);
   if (LargestComponent(mapped.direction) < kMinMappedDirection<Real>) mapped.direction = {0, 0, 0};
-  if (ray.source_instance != instance) mapped.source = kNoPrimitive;
+  if (ray.instance != instance) mapped.source = kNoPrimitive;
   return mapped;
 }
 
@@ -66,18 +52,17 @@ template <Query kQuery, typename Real>
 class InstanceTracer {
  public:
   // `nearest`: what the ray hits first besides instances; its end, if that is nothing.
-  InstanceTracer(const InstanceTree<Real>& tree, const InstanceRay<Real>& ray,
-                 const InstanceHit<Real>& nearest)
+  InstanceTracer(const InstanceTree<Real>& tree, const Ray<Real>& ray, const Hit<Real>& nearest)
       : tree_(tree), ray_(ray), nearest_(nearest) {
-    ray_.ray.t_max = nearest.hit.t;
-    MakeFinite(ray_.ray);
+    ray_.t_max = nearest.t;
+    MakeFinite(ray_);
   }
 
-  InstanceHit<Real> Trace() {
-    if (tree_.node_count == 0 || !IsTraceable(ray_.ray)) return nearest_;
-    if (FitsWideBoxes(ray_.ray)) {
+  Hit<Real> Trace() {
+    if (tree_.node_count == 0 || !IsTraceable(ray_)) return nearest_;
+    if (FitsWideBoxes(ray_)) {
       const double give = static_cast<double>(tree_.condition) * kInstanceSlack;
-      Visit(0, WideSlabsOf(tree_, ray_.ray, give));
+      Visit(0, WideSlabsOf(tree_, ray_, give));
     } else {
       TestEvery();
     }
@@ -89,9 +74,7 @@ class InstanceTracer {
   }
 
  private:
-  bool is_done() const {
-    return kQuery == Query::kOccluded && nearest_.hit.primitive != kNoPrimitive;
-  }
+  bool is_done() const { return kQuery == Query::kOccluded && nearest_.primitive != kNoPrimitive; }
 
   // Children in the order in which rays of the octant meet them. Recurses as deep as the tree.
   void Visit(std::uint32_t index, const RaySlabs<double>& box) {
@@ -109,8 +92,8 @@ class InstanceTracer {
   }
 
   bool Meets(const TreeNode& node, std::uint32_t child, const RaySlabs<double>& box) const {
-    double enter = OutwardBy(static_cast<double>(ray_.ray.t_min), -1);
-    double leave = OutwardBy(static_cast<double>(ray_.ray.t_max), 1);
+    double enter = OutwardBy(static_cast<double>(ray_.t_min), -1);
+    double leave = OutwardBy(static_cast<double>(ray_.t_max), 1);
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = [&](int row, double offset) {
         return static_cast<double>(node.bounds[row][child]) * box.scale[axis] + offset;
@@ -124,32 +107,32 @@ class InstanceTracer {
   void Test(std::uint32_t instance) {
     const TreeView<Real>& object = tree_.trees[tree_.object[instance]];
     const Ray<Real> mapped = MapRay(tree_, instance, ray_);
-    const Hit<Real> hit = TreeTracer<kQuery, Real>(object, mapped).Trace();
+    Hit<Real> hit = TreeTracer<kQuery, Real>(object, mapped).Trace();
     if (hit.primitive == kNoPrimitive ||
-        !TakesOver(hit.t, instance, nearest_.hit.t, nearest_.hit.primitive, nearest_.instance)) {
+        !TakesOver(hit.t, instance, nearest_.t, nearest_.primitive, nearest_.instance)) {
       return;
     }
-    nearest_ = {hit, instance};
-    ray_.ray.t_max = hit.t;
+    hit.instance = instance;
+    nearest_ = hit;
+    ray_.t_max = hit.t;
   }
 
   const InstanceTree<Real>& tree_;
-  InstanceRay<Real> ray_;
-  InstanceHit<Real> nearest_;
+  Ray<Real> ray_;
+  Hit<Real> nearest_;
 };
 
 // The nearest of `nearest` and all that the ray hits in instances.
 template <typename Real>
-InstanceHit<Real> TraceClosest(const InstanceTree<Real>& tree, const InstanceRay<Real>& ray,
-                               const InstanceHit<Real>& nearest) {
+Hit<Real> TraceClosest(const InstanceTree<Real>& tree, const Ray<Real>& ray,
+                       const Hit<Real>& nearest) {
   return InstanceTracer<Query::kClosest, Real>(tree, ray, nearest).Trace();
 }
 
 template <typename Real>
-bool TraceOccluded(const InstanceTree<Real>& tree, const InstanceRay<Real>& ray) {
-  const InstanceHit<Real> end = {Hit<Real>{ray.ray.t_max}};
-  return InstanceTracer<Query::kOccluded, Real>(tree, ray, end).Trace().hit.primitive !=
-         kNoPrimitive;
+bool TraceOccluded(const InstanceTree<Real>& tree, const Ray<Real>& ray) {
+  const Hit<Real> end = {ray.t_max};
+  return InstanceTracer<Query::kOccluded, Real>(tree, ray, end).Trace().primitive != kNoPrimitive;
 }
 
 }  // namespace sheaf::scalar

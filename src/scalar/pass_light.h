@@ -7,6 +7,7 @@
 #include "simd/query.h"
 #include "src/scalar/attenuate.h"
 #include "src/scalar/finish.h"
+#include "src/scalar/place_surface.h"
 #include "src/scalar/ray.h"
 #include "src/scalar/sphere_coordinates.h"
 #include "src/scalar/trace_tree.h"
@@ -17,6 +18,7 @@ namespace sheaf::scalar {
 // Light passes at most this many surfaces.
 inline constexpr int kMostPasses = 256;
 
+// In the object, where the hit is an instance's; then the ray is mapped.
 template <typename Real>
 Surface<Real> SurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& material,
                         const Ray<Real>& ray, const Hit<Real>& hit) {
@@ -53,13 +55,15 @@ Passing PassOn(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ra
   if (is_end) return Passing::kArrived;
   const MaterialData<Real>& material = frame.materials[frame.primitives[hit.primitive].material];
   if (!LetsLightPass(material)) return Passing::kBlocked;
-  const Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
+  Surface<Real> surface = SurfaceOf(frame, material, RayAtHit(frame, ray, hit.instance), hit);
+  if (hit.instance != kNoInstance) PlaceSurface(frame, ray, hit.instance, surface);
   share = MultiplyColours(share, PassedAt(material, frame.textures, surface));
   if (!IsLight(share)) return Passing::kBlocked;
   const Vec3<Real> start = surface.position - surface.face * surface.offset;
   if (ends_at_point) ray.direction = (ray.origin + ray.direction) - start;
   ray.origin = start;
   ray.source = surface.source ^ kInsideBit;
+  ray.instance = surface.instance;
   return Passing::kGoesOn;
 }
 
@@ -67,10 +71,10 @@ Passing PassOn(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ra
 template <typename Real>
 Vec3<Real> LightShare(const FrameView<Real>& frame, Ray<Real> ray) {
   Vec3<Real> share = {1, 1, 1};
-  if (!TraceOccluded(frame.tree, ray)) return share;
+  if (!TraceOccluded(frame, ray)) return share;
   if (!frame.passes_light) return {0, 0, 0};
   for (int i = 0; i < kMostPasses; ++i) {
-    const Passing passing = PassOn(frame, TraceClosest(frame.tree, ray), ray, share);
+    const Passing passing = PassOn(frame, TraceClosest(frame, ray), ray, share);
     if (passing == Passing::kArrived) return share;
     if (passing == Passing::kBlocked) break;
   }

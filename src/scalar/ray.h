@@ -16,6 +16,7 @@ struct Ray {
   std::uint32_t source = kNoPrimitive;  // see simd/query.h
   Real t_min = kDefaultTMin<Real>;
   Real t_max = kDefaultTMax<Real>;
+  std::uint32_t instance = kNoInstance;  // that the source belongs to
 };
 
 template <typename Real>
@@ -23,6 +24,7 @@ struct Hit {
   Real t;
   std::uint32_t primitive = kNoPrimitive;
   Real u = 0, v = 0;  // by the kind of primitive: see HitFields of simd/streams.h
+  std::uint32_t instance = kNoInstance;  // that was hit
 };
 
 // An infinite interval admits every finite t. Stays NaN for NaN.

@@ -60,10 +60,11 @@ Vec3<Real> LightFrom(const FrameView<Real>& frame, const LightData<Real>& light,
   Vec3<Real> share = {1, 1, 1};
   if (light.casts_shadows) {
     ++tally.shadow;
-    const Ray<Real> ray = ShadowRay(light, at.surface, incidence);
+    Ray<Real> ray = ShadowRay(light, at.surface, incidence);
+    ray.instance = at.surface.instance;
     // Rays find lamps behind glass themselves.
     if (light.shape == LightShape::kEmitters) {
-      if (TraceOccluded(frame.tree, ray)) return {0, 0, 0};
+      if (TraceOccluded(frame, ray)) return {0, 0, 0};
       share = incidence.colour;
     } else {
       share = LightShare(frame, ray);
@@ -79,7 +80,9 @@ Real EmissionWeight(const FrameView<Real>& frame, const Path<Real>& path, const 
                     const ShadedPoint<Real>& at) {
   const Real density = at.material.emitter_density;
   const bool is_triangle = frame.primitives[hit.primitive].kind() == PrimitiveKind::kTriangle;
-  if (!(path.density > 0 && density > 0 && is_triangle)) return 1;
+  // Of instances no lamp is drawn.
+  const bool is_drawn = is_triangle && hit.instance == kNoInstance;
+  if (!(path.density > 0 && density > 0 && is_drawn)) return 1;
   return FoundWeight(path.density, density, at.surface, hit.t);
 }
 
@@ -108,17 +111,27 @@ Vec3<Real> LocalLight(const FrameView<Real>& frame, const ShadedPoint<Real>& at,
 template <typename Real>
 Surface<Real> ShadedSurface(const FrameView<Real>& frame, const MaterialData<Real>& material,
                             const Path<Real>& path, const Hit<Real>& hit) {
-  Surface<Real> surface = SurfaceOf(frame, material, path.ray, hit);
+  const bool is_placed = hit.instance != kNoInstance;
+  const Ray<Real> ray = RayAtHit(frame, path.ray, hit.instance);
+  Surface<Real> surface = SurfaceOf(frame, material, ray, hit);
   const PrimitiveInfo& primitive = frame.primitives[hit.primitive];
   if (material.needs & kNeedsWidth) {
     MeasureFootprint(frame.geometry, primitive.place, path.width, frame.cone.spread, hit.t,
                      surface);
+    if (is_placed) {
+      const Real stretch = StretchOf(ray.direction);
+      surface.footprint_u = surface.footprint_u * stretch;
+      surface.footprint_v = surface.footprint_v * stretch;
+      surface.footprint_u2 = surface.footprint_u2 * stretch;
+      surface.footprint_v2 = surface.footprint_v2 * stretch;
+    }
   }
   if (material.finish.normals != kNoTexture && primitive.kind() == PrimitiveKind::kTriangle) {
     const TextureData<Real>& map = frame.textures[material.finish.normals];
     surface.normal = BumpedNormal(material, map, SampleTexture(map, surface),
                                   frame.geometry.triangles, primitive.index(), surface);
   }
+  if (is_placed) PlaceSurface(frame, path.ray, hit.instance, surface);
   return surface;
 }
 
@@ -158,6 +171,7 @@ void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key,
   if (!SendsRays(frame, here)) return;
   const auto append = [&](ChildKind kind, Path<Real>& child) {
     if (!child.counts(frame.min_throughput)) return;
+    child.ray.instance = surface.instance;
     if (frame.is_distributed) child.seed = ChildSeed(path.seed, kind);
     children[static_cast<std::size_t>(kind)].push_back(child);
   };
@@ -212,7 +226,7 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
   for (int depth = 0; !scratch.paths.empty() && !stop.load(std::memory_order_relaxed); ++depth) {
     for (auto& children : scratch.children) children.clear();
     for (Path<Real>& path : scratch.paths) {
-      const Hit<Real> hit = TraceClosest(frame.tree, path.ray);
+      const Hit<Real> hit = TraceClosest(frame, path.ray);
       if (hit.primitive == kNoPrimitive) {
         Accumulate(sum, path.throughput, ColourBeyond(frame, path.ray.direction));
         continue;

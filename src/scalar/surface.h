@@ -29,6 +29,7 @@ struct Surface {
   Real alpha = 1;               // of the vertices
   Real offset;
   std::uint32_t source;
+  std::uint32_t instance = kNoInstance;   // that the source belongs to
   Real width = 0;                         // of the ray's cone there
   Real footprint_u = 0, footprint_v = 0;  // how much of u and v the cone covers
   Real footprint_u2 = 0, footprint_v2 = 0;

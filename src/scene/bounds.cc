@@ -2,6 +2,8 @@
 
 #include <glm/common.hpp>
 
+#include "src/scene/placed_groups.h"
+
 namespace sheaf {
 namespace {
 
@@ -24,6 +26,10 @@ std::optional<Bounds> BoundsOf(const Scene& scene) {
   for (const Object& object : scene.objects) {
     ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(point, bounds); });
   }
+  ForEachPlacedBox(scene, [&](const Bounds& box) {
+    Include(box.min, bounds);
+    Include(box.max, bounds);
+  });
   return bounds;
 }
 

@@ -16,7 +16,8 @@ struct Bounds {
 // The smallest box around a shape; nothing around a mesh without triangles.
 std::optional<Bounds> BoundsOf(const Shape& shape);
 
-// The smallest box around all objects; nothing where there are none.
+// A box around all objects and instances, the smallest around objects; nothing where there are
+// none.
 std::optional<Bounds> BoundsOf(const Scene& scene);
 
 }  // namespace sheaf

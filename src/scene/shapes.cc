@@ -152,14 +152,22 @@ void ForEachPrimitive(const Shape& shape, const std::function<void(const ShapePr
 
 CountsByKind<std::uint64_t> CountPrimitives(const Scene& scene) {
   CountsByKind<std::uint64_t> counts;
-  for (const Object& object : scene.objects) {
+  ForEachObject(scene, [&](const Object& object) {
     ForEachPrimitive(object.shape,
                      [&](const ShapePrimitive& primitive) { ++counts[primitive.kind]; });
     if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
       counts[PrimitiveKind::kTriangle] += mesh->triangles.size();
     }
-  }
+  });
   return counts;
+}
+
+const Object& ObjectAt(const Scene& scene, std::size_t number) {
+  if (number < scene.objects.size()) return scene.objects[number];
+  number -= scene.objects.size();
+  auto group = scene.groups.begin();
+  for (; number >= group->objects.size(); ++group) number -= group->objects.size();
+  return group->objects[number];
 }
 
 }  // namespace sheaf

@@ -33,7 +33,21 @@ struct ShapePrimitive {
 // vertices: none is called for.
 void ForEachPrimitive(const Shape& shape, const std::function<void(const ShapePrimitive&)>& add);
 
-// How many primitives of each kind the objects of a scene are; a quad is two triangles.
+// Calls f(object) for the objects of a scene and then those of its groups, in order: by the numbers
+// that frames give them.
+template <typename F>
+void ForEachObject(const Scene& scene, F f) {
+  for (const Object& object : scene.objects) f(object);
+  for (const Group& group : scene.groups) {
+    for (const Object& object : group.objects) f(object);
+  }
+}
+
+// The object of such a number.
+const Object& ObjectAt(const Scene& scene, std::size_t number);
+
+// How many primitives of each kind the objects of a scene and its groups are; a quad is two
+// triangles.
 CountsByKind<std::uint64_t> CountPrimitives(const Scene& scene);
 
 }  // namespace sheaf

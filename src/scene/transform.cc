@@ -51,6 +51,11 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     const std::string fault = TransformShape(transform, &object.shape);
     if (!fault.empty()) return fault;
   }
+  for (Instance& instance : scene->instances) {
+    const Transform moved = transform * Transform{instance.linear, instance.translation};
+    instance.linear = moved.linear;
+    instance.translation = moved.translation;
+  }
   for (Light& light : scene->lights) {
     const bool is_round = std::holds_alternative<DiskLight>(light.source) ||
                           std::holds_alternative<SphereLight>(light.source);

@@ -28,8 +28,8 @@ Transform operator*(const Transform& a, const Transform& b);
 // Turns by `degrees` about `axis`, of any length but 0, counter-clockwise seen from its tip.
 Transform RotationAbout(const Vec3d& axis, double degrees);
 
-// Moves every object, light and camera. Falloffs stay as they are: intensity belongs to the light,
-// not to its surroundings. An empty string, or what cannot be moved so.
+// Moves every object, instance, light and camera. Falloffs stay as they are: intensity belongs to
+// the light, not to its surroundings. An empty string, or what cannot be moved so.
 std::string TransformScene(const Transform& transform, Scene* scene);
 
 }  // namespace sheaf

@@ -13,7 +13,9 @@
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "src/core/match.h"
+#include "src/scene/affine_map.h"
 #include "src/scene/direction.h"
+#include "src/scene/placed_groups.h"
 #include "src/scene/projection.h"
 #include "src/scene/textures.h"
 
@@ -333,6 +335,33 @@ Status CheckAll(const char* kind, const std::vector<Part>& parts, F check) {
   return Done{};
 }
 
+// `groups`: how many may be stood somewhere.
+Status CheckInstances(const std::vector<Instance>& instances, std::size_t groups) {
+  return CheckAll("instance", instances, [&](const Instance& instance, FirstFault& fault) {
+    fault.Index("group", instance.group, groups);
+    if (const std::string flat = FaultOf(MapOf(TransformOf(instance))); !flat.empty())
+      fault.Fail(flat);
+  });
+}
+
+Status CheckGroups(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.groups.size(); ++i) {
+    const Group& group = scene.groups[i];
+    Status status = CheckAll("object", group.objects, [&](const Object& object, FirstFault& fault) {
+      fault.Index("material", object.material, scene.materials.size());
+      Check(object, fault);
+    });
+    if (status.ok()) status = CheckInstances(group.instances, i);
+    if (status.ok()) continue;
+    return Error{ErrorKind::kScene,
+                 PlaceOf("group", i, group.name) + ": " + status.error().message};
+  }
+  if (Status status = CheckInstances(scene.instances, scene.groups.size()); !status) return status;
+  if (CountPlacedGroups(scene) <= kMaxInstances) return Done{};
+  return Error{ErrorKind::kScene,
+               fmt::format("instances: more than {} through all levels", kMaxInstances)};
+}
+
 }  // namespace
 
 Status Validate(const Scene& scene) {
@@ -346,6 +375,7 @@ Status Validate(const Scene& scene) {
     Check(object, fault);
   });
   if (!status) return status;
+  if (status = CheckGroups(scene); !status) return status;
   if (status = CheckAll("light", scene.lights, check); !status) return status;
   if (status = CheckAll("camera", scene.cameras, check); !status) return status;
   return CheckAll("view", scene.views, [&](const View& view, FirstFault& fault) {

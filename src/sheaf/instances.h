@@ -33,7 +33,7 @@ struct Place {
 
 // What InstancesOf is made of, and takes.
 struct InstanceStatistics {
-  std::uint32_t instances;     // all, those of empty geometries too
+  std::uint32_t instances;  // all, those of empty geometries too
   std::uint32_t geometries;
   std::uint32_t nodes, depth;  // of the tree over instances
   std::size_t bytes;           // of memory, without the geometries

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <iterator>
@@ -192,6 +193,28 @@ struct Object {
   std::variant<Sphere, Quad, Triangle, Mesh, Disk> shape;
   std::uint32_t material = 0;  // index into Scene::materials
 };
+
+// A place where a group stands: points p of it go to linear * p + translation. Spheres may become
+// ellipsoids, and a map may mirror; a front stays a front.
+struct Instance {
+  std::string name;         // may be empty
+  std::uint32_t group = 0;  // index into Scene::groups
+  // Columns: where the axes go. Finite, and it must not flatten: |M| |M^-1| has no row whose sum is
+  // above a million.
+  glm::dmat3 linear{1.0};
+  Vec3d translation{0.0};  // finite
+};
+
+// Objects, and instances of groups before this one, that stand wherever an instance says, and
+// nowhere else. They are there once, however many instances there are.
+struct Group {
+  std::string name;  // may be empty
+  std::vector<Object> objects;
+  std::vector<Instance> instances;
+};
+
+// Instances of a scene, counted through all levels.
+inline constexpr std::uint32_t kMaxInstances = 1u << 26;
 
 // How the illuminance of a point light falls with the distance r: one over kc + kl r + kq r^2.
 struct Falloff {
@@ -436,6 +459,8 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<View> views;
+  std::vector<Group> groups;
+  std::vector<Instance> instances;
 };
 
 // Whether a scene, or a camera alone, keeps the rules of this header: every index in range, every

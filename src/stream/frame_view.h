@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "simd/instances.h"
 #include "simd/shading.h"
 #include "simd/tree.h"
 
@@ -57,8 +58,14 @@ struct FrameView {
   bool is_distributed = false;
   bool follows_paths = false;  // one ray of each surface alone
 
+  // What stands in many places besides the geometry's own primitives, whose triangles, spheres and
+  // disks the geometry has too; and the way back of each instance's map.
+  InstanceTree<Real> instances = {};
+  const AffineMap* to_world = nullptr;
+
   Real error = 0;  // that a pixel's mean may have, above 0; 0: all samples are taken
 
+  bool has_instances() const { return instances.node_count > 0; }
   bool converges() const { return error > 0 && sample_x.size() > 1; }
   bool is_adaptive() const { return contrast >= 0 && sample_x.size() > 1; }
 };

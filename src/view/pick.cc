@@ -4,6 +4,7 @@
 
 #include "src/formats/printable.h"
 #include "src/lab/object_at.h"
+#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
@@ -48,7 +49,7 @@ Result<Pick> PickPixel(const ViewRequest& request, int x, int y) {
   const auto id = static_cast<std::size_t>(*film.at(Layer::kId, 0, 0));
   if (id == 0) return pick;
   pick.object = id - 1;
-  const Object& object = scene.objects[*pick.object];
+  const Object& object = ObjectAt(scene, *pick.object);
   pick.object_name = object.name;
   pick.material_name = scene.materials[object.material].name;
   pick.distance = static_cast<double>(*film.at(Layer::kDepth, 0, 0));
