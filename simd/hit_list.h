@@ -2,6 +2,7 @@
 #ifndef SHEAF_SIMD_HIT_LIST_H_
 #define SHEAF_SIMD_HIT_LIST_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -95,18 +96,23 @@ class HitList {
     if (output_.after && !Precedes(output_.after[ray_], hit)) return;
     if (!rules_.Admits(ray_, hit.primitive)) return;
     ++total_;
-    std::uint32_t at = listed_;
     if (listed_ < output_.capacity) {
-      ++listed_;
-    } else if (at == 0 || !Precedes(hit, hits_[--at])) {
-      return;
+      hits_[listed_++] = hit;
+      if (listed_ < output_.capacity) return;
+      std::make_heap(hits_, hits_ + listed_, Precedes<Real>);
+    } else {
+      // Full: a heap, whose first element is the last of the list.
+      if (listed_ == 0 || !Precedes(hit, hits_[0])) return;
+      std::pop_heap(hits_, hits_ + listed_, Precedes<Real>);
+      hits_[listed_ - 1] = hit;
+      std::push_heap(hits_, hits_ + listed_, Precedes<Real>);
     }
-    for (; at > 0 && Precedes(hit, hits_[at - 1]); --at) hits_[at] = hits_[at - 1];
-    hits_[at] = hit;
-    if (!output_.total && listed_ == output_.capacity) last_ = hits_[listed_ - 1].t;
+    if (!output_.total) last_ = hits_[0].t;
   }
 
+  // Puts the list in order. Nothing is added any more.
   void Finish() const {
+    std::sort(hits_, hits_ + listed_, Precedes<Real>);
     output_.listed[ray_] = listed_;
     if (output_.total) output_.total[ray_] = total_;
   }

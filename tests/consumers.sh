@@ -69,8 +69,8 @@ while read -r name; do
 done < <(names_in "$(find "$static" -name libsheaf.a)")
 [[ $count -gt 3 ]] || fail "no public names were found"
 echo "libsheaf.so: $count public names"
-# Likewise of C: the names of its header, and no more.
-sed 's|//.*||' "$shared/include/sheaf/capi.h" | tr '\n' ' ' | grep -oE 'SHEAF_API [^(;]*\(' | grep -oE 'sheaf_[a-z_]+\(' |
+# Likewise of C: the names of its headers, and no more.
+sed 's|//.*||' "$shared"/include/sheaf/capi*.h | tr '\n' ' ' | grep -oE 'SHEAF_API [^(;]*\(' | grep -oE 'sheaf_[a-z_]+\(' |
   tr -d '(' | sort >"$work/names"
 nm -D --defined-only "$library" | sed -nE 's/.* T (sheaf_[a-z_]+)$/\1/p' | sort | diff "$work/names" - ||
   fail "<sheaf/capi.h> and libsheaf.so differ in names"

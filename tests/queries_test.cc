@@ -114,6 +114,31 @@ TEST_CASE("what is not wanted is not written, and structures are as good as arra
   CHECK(wrong == 0);
 }
 
+TEST_CASE("runs have no limit but the one that is asked for") {
+  World<float> world(12, 400, 300);
+  const std::size_t count = world.rays.size();
+  std::size_t longest = 0;
+  for (const std::uint32_t most : {0xffffffffu, 0u, 1u, 33u}) {
+    const auto runs =
+        ListAllHits(world.geometry, world.rays.view(), count, world.options(), most).value();
+    REQUIRE(runs.first.size() == count + 1);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& want = world.hits[i];
+      const std::size_t first = runs.first[i], size = runs.first[i + 1] - first;
+      longest = std::max(longest, size);
+      wrong += size != std::min<std::size_t>(want.size(), most);
+      for (std::size_t k = 0; k < size && k < want.size(); ++k) {
+        wrong += !SameBits(runs.t[first + k], want[k].t) ||
+                 runs.primitive[first + k] != want[k].primitive ||
+                 !SameBits(runs.u[first + k], want[k].u);
+      }
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(longest > 64);
+}
+
 // Rules, and what they admit.
 struct RandomRules {
   std::vector<std::uint32_t> object_mask, ray_mask, excluded;

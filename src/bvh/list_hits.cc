@@ -37,9 +37,22 @@ template <typename Real>
 Status CheckRules(const RayArraysOf<Real>& rays, std::size_t count,
                   const RuledTraceOptionsOf<Real>& options) {
   if (Status checked = CheckRays(rays, count); !checked) return checked;
-  const HitRules& rules = options.rules;
-  if (count > 0 && rules.excluded_per_ray > 0 && !rules.excluded) return NullArray("excluded");
-  return Done{};
+  return CheckRules(options.rules, count);
+}
+
+template <typename Real>
+HitRuleView RuleViewOf(const GeometryOf<Real>& geometry, const HitRules& rules, std::size_t first) {
+  HitRuleView view;
+  if (rules.object_mask) {
+    view.object_mask = rules.object_mask;
+    view.first = GeometryAccess::DataOf(geometry).first.data();
+    view.object_count = geometry.object_count();
+    view.all_ray_mask = rules.all_ray_mask;
+    if (rules.ray_mask) view.ray_mask = rules.ray_mask + first;
+  }
+  view.excluded_count = rules.excluded_per_ray;
+  if (rules.excluded) view.excluded = rules.excluded + first * rules.excluded_per_ray;
+  return view;
 }
 
 template <typename Real>
@@ -48,25 +61,16 @@ HitLister<Real>::HitLister(const GeometryOf<Real>& geometry, const RayArraysOf<R
     : geometry_(geometry),
       arrays_(rays),
       options_(options),
+      first_capacity_(capacity),
       capacity_(capacity),
-      hits_(std::size_t{kListBlock} * capacity) {
-  const HitRules& rules = options.rules;
-  if (rules.object_mask) {
-    rules_.object_mask = rules.object_mask;
-    rules_.first = GeometryAccess::DataOf(geometry).first.data();
-    rules_.object_count = geometry.object_count();
-    rules_.all_ray_mask = rules.all_ray_mask;
-  }
-  rules_.excluded_count = rules.excluded_per_ray;
-}
+      hits_(std::size_t{kListBlock} * capacity) {}
 
 template <typename Real>
 void HitLister<Real>::Take(std::size_t first, std::uint32_t count) {
   count_ = count;
+  capacity_ = first_capacity_;
   block_.Take(arrays_, options_.interval, first, count, GeometryAccess::ScaleOf(geometry_));
-  const HitRules& rules = options_.rules;
-  if (rules.object_mask && rules.ray_mask) rules_.ray_mask = rules.ray_mask + first;
-  if (rules.excluded) rules_.excluded = rules.excluded + first * rules.excluded_per_ray;
+  rules_ = RuleViewOf(geometry_, options_.rules, first);
   List(nullptr);
 }
 
@@ -81,6 +85,8 @@ template Status CheckRules(const RayArraysOf<float>&, std::size_t,
                            const RuledTraceOptionsOf<float>&);
 template Status CheckRules(const RayArraysOf<double>&, std::size_t,
                            const RuledTraceOptionsOf<double>&);
+template HitRuleView RuleViewOf(const GeometryOf<float>&, const HitRules&, std::size_t);
+template HitRuleView RuleViewOf(const GeometryOf<double>&, const HitRules&, std::size_t);
 template class HitLister<float>;
 template class HitLister<double>;
 

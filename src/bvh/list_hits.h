@@ -2,6 +2,7 @@
 #ifndef SHEAF_BVH_LIST_HITS_H_
 #define SHEAF_BVH_LIST_HITS_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "sheaf/geometry.h"
 #include "sheaf/queries.h"
 #include "simd/hit_list.h"
+#include "src/bvh/check_arrays.h"
 #include "src/bvh/ray_block.h"
 
 namespace sheaf {
@@ -21,6 +23,15 @@ inline constexpr std::uint32_t kListBlock = 128;  // rays whose lists are made a
 template <typename Real>
 Status CheckRules(const RayArraysOf<Real>& rays, std::size_t count,
                   const RuledTraceOptionsOf<Real>& options);
+
+inline Status CheckRules(const HitRules& rules, std::size_t count) {
+  if (count > 0 && rules.excluded_per_ray > 0 && !rules.excluded) return NullArray("excluded");
+  return Done{};
+}
+
+// The rules of rays, or other things that are asked about, from number `first` on.
+template <typename Real>
+HitRuleView RuleViewOf(const GeometryOf<Real>& geometry, const HitRules& rules, std::size_t first);
 
 // The lists of at most kListBlock rays: elements [i * capacity, i * capacity + listed[i]) of
 // `hits`.
@@ -52,6 +63,7 @@ class HitLister {
       has_any |= goes_on;
     }
     if (!has_any) return false;
+    Grow();
     List(after_);
     has_any = false;
     for (std::uint32_t i = 0; i < count_; ++i) has_any |= listed[i] > 0;
@@ -71,11 +83,16 @@ class HitLister {
   static constexpr ListedHit<Real> kNothing = {std::numeric_limits<Real>::infinity(), kNoPrimitive,
                                                0, 0};
   void List(const ListedHit<Real>* after);
+  // Rays that have many hits have more.
+  void Grow() {
+    capacity_ = std::min(4 * capacity_, std::max(capacity_, 1u << 12));
+    hits_.resize(std::size_t{kListBlock} * capacity_);
+  }
 
   const GeometryOf<Real>& geometry_;
   const RayArraysOf<Real>& arrays_;
   const RuledTraceOptionsOf<Real>& options_;
-  std::uint32_t capacity_;
+  std::uint32_t first_capacity_, capacity_;
   HitRuleView rules_;  // of the block
   RayBlock<Real, kListBlock> block_;
   std::uint32_t count_ = 0;

@@ -14,6 +14,8 @@ namespace {
 
 // A filter is asked about so many hits of a ray at a time.
 constexpr std::uint32_t kCandidates = 4;
+// Lists of any length grow by so many hits at a time.
+constexpr std::uint32_t kRunStep = 32;
 
 // Writes elements of arrays that have a stride, one by one.
 template <typename Real>
@@ -92,6 +94,20 @@ class Candidates {
   std::vector<std::uint8_t> accepted_;
 };
 
+// Adds the hits of the next ray.
+template <typename Real>
+void Append(const GeometryOf<Real>& geometry, const std::vector<ListedHit<Real>>& hits,
+            HitRunsOf<Real>* runs) {
+  for (const ListedHit<Real>& hit : hits) {
+    runs->t.push_back(hit.t);
+    runs->u.push_back(hit.u);
+    runs->v.push_back(hit.v);
+    runs->primitive.push_back(hit.primitive);
+    runs->object.push_back(geometry.object_of(hit.primitive));
+  }
+  runs->first.push_back(runs->t.size());
+}
+
 // Calls put(ray, hit) for the first hit of each ray that rules and filter let pass, and miss(ray,
 // t_max) for the others. By rules alone, `order` says whether any hit will do.
 template <typename Real, typename Put, typename Miss>
@@ -148,6 +164,29 @@ Status TraceAll(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
 }
 
 template <typename Real>
+Result<HitRunsOf<Real>> ListAllHits(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
+                                    std::size_t count, const RuledTraceOptionsOf<Real>& options,
+                                    std::uint32_t most) {
+  if (Status checked = CheckRules(rays, count, options); !checked) return checked.error();
+  HitRunsOf<Real> runs;
+  runs.first.push_back(0);
+  HitLister<Real> lister(geometry, rays, options, std::min(most, kRunStep));
+  ForEachBatch(count, kListBlock, [&](std::size_t first, std::uint32_t n) {
+    std::vector<ListedHit<Real>> hits[kListBlock];
+    lister.Take(first, n);
+    do {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::size_t room = most - hits[i].size();
+        const ListedHit<Real>* const list = lister.list(i);
+        hits[i].insert(hits[i].end(), list, list + std::min<std::size_t>(lister.listed[i], room));
+      }
+    } while (most > 0 && lister.Next([&](std::uint32_t i) { return hits[i].size() < most; }));
+    for (std::uint32_t i = 0; i < n; ++i) Append(geometry, hits[i], &runs);
+  });
+  return runs;
+}
+
+template <typename Real>
 Status TraceRuledClosest(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
                          std::size_t count, const HitArraysOf<Real>& hits,
                          const RuledTraceOptionsOf<Real>& options,
@@ -177,14 +216,17 @@ Status TraceRuledOccluded(const GeometryOf<Real>& geometry, const RayArraysOf<Re
   return Done{};
 }
 
-#define SHEAF_INSTANTIATE(Real)                                                                  \
-  template Status TraceAll(const GeometryOf<Real>&, const RayArraysOf<Real>&, std::size_t,       \
-                           const AllHitsOf<Real>&, const RuledTraceOptionsOf<Real>&);            \
-  template Status TraceRuledClosest(const GeometryOf<Real>&, const RayArraysOf<Real>&,           \
-                                    std::size_t, const HitArraysOf<Real>&,                       \
-                                    const RuledTraceOptionsOf<Real>&, const HitFilterOf<Real>&); \
-  template Status TraceRuledOccluded(const GeometryOf<Real>&, const RayArraysOf<Real>&,          \
-                                     std::size_t, std::uint32_t*,                                \
+#define SHEAF_INSTANTIATE(Real)                                                                   \
+  template Status TraceAll(const GeometryOf<Real>&, const RayArraysOf<Real>&, std::size_t,        \
+                           const AllHitsOf<Real>&, const RuledTraceOptionsOf<Real>&);             \
+  template Result<HitRunsOf<Real>> ListAllHits(const GeometryOf<Real>&, const RayArraysOf<Real>&, \
+                                               std::size_t, const RuledTraceOptionsOf<Real>&,     \
+                                               std::uint32_t);                                    \
+  template Status TraceRuledClosest(const GeometryOf<Real>&, const RayArraysOf<Real>&,            \
+                                    std::size_t, const HitArraysOf<Real>&,                        \
+                                    const RuledTraceOptionsOf<Real>&, const HitFilterOf<Real>&);  \
+  template Status TraceRuledOccluded(const GeometryOf<Real>&, const RayArraysOf<Real>&,           \
+                                     std::size_t, std::uint32_t*,                                 \
                                      const RuledTraceOptionsOf<Real>&, const HitFilterOf<Real>&)
 SHEAF_INSTANTIATE(float);
 SHEAF_INSTANTIATE(double);

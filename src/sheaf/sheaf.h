@@ -6,6 +6,7 @@
 #include "sheaf/film.h"
 #include "sheaf/formats.h"
 #include "sheaf/geometry.h"
+#include "sheaf/queries.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "sheaf/stats.h"

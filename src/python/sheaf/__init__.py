@@ -19,7 +19,7 @@ released while rays are traced, trees are built and frames are rendered; leave t
 meanwhile.
 """
 
-from ._geometry import INSIDE_BIT, NO_PRIMITIVE, Geometry, Hits
+from ._geometry import INSIDE_BIT, NO_PRIMITIVE, AllHits, Candidates, Geometry, Hits
 from ._scene import Camera, Scene, parse_scene, read_picture, read_scene, write_picture
 from ._sheaf import (
     Error,
@@ -35,7 +35,9 @@ from ._sheaf import (
 __all__ = [
     "INSIDE_BIT",
     "NO_PRIMITIVE",
+    "AllHits",
     "Camera",
+    "Candidates",
     "Error",
     "FileError",
     "Geometry",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -108,6 +108,68 @@ def _limits(
     return numpy.require(array, requirements=("C", "ALIGNED"))
 
 
+def _rules(
+    geometry: "Geometry",
+    count: int,
+    object_mask: Optional[ArrayLike],
+    ray_mask: Optional[ArrayLike],
+    excluded: Optional[ArrayLike],
+) -> Tuple[Any, ...]:
+    """Masks and exclusions as the extension takes them."""
+    objects = len(geometry.first_primitives) - 1
+    of_objects = None if object_mask is None else _indices("object_mask", object_mask)
+    if of_objects is not None and of_objects.shape != (objects,):
+        raise UsageError(f"object_mask: shape {of_objects.shape}, not ({objects},)")
+    of_rays = None if ray_mask is None else _indices("ray_mask", ray_mask)
+    if of_rays is not None and of_rays.shape not in ((), (count,)):
+        raise UsageError(f"ray_mask: shape {of_rays.shape}, not () or ({count},)")
+    if of_rays is not None and of_objects is None:
+        raise UsageError("ray_mask: there is no object_mask")
+    one = int(of_rays) if of_rays is not None and of_rays.ndim == 0 else 2**32 - 1
+    table = None
+    if excluded is not None:
+        table = _indices("excluded", excluded)
+        if table.ndim not in (1, 2) or (table.ndim == 2 and len(table) != count):
+            raise UsageError(f"excluded: shape {table.shape}, not ({count}, K) or (K,)")
+        table = numpy.require(
+            numpy.broadcast_to(table, (count, table.shape[-1])), requirements=("C", "ALIGNED")
+        )
+    return of_objects, None if of_rays is None or of_rays.ndim == 0 else of_rays, one, table
+
+
+class Candidates(NamedTuple):
+    """Hits that a filter is asked about, an element each of every array; those of a ray in order."""
+
+    #: The ray's place among those of the call.
+    ray: NDArray[numpy.uintp]
+    t: _Numbers
+    u: _Numbers
+    v: _Numbers
+    primitive: NDArray[numpy.uint32]
+    object: NDArray[numpy.uint32]
+
+
+#: Takes Candidates, returns a bool for each.
+Filter = Callable[[Candidates], ArrayLike]
+
+
+def _filter(function: Optional[Filter]) -> Optional[Callable[..., _Numbers]]:
+    if function is None:
+        return None
+    known = function
+
+    def ask(*arrays: _Numbers) -> _Numbers:
+        answer = numpy.asarray(known(Candidates(*arrays)))
+        if answer.shape != arrays[0].shape or answer.dtype != numpy.bool_:
+            raise UsageError(
+                f"filter: an answer of shape {answer.shape} and {answer.dtype}, not "
+                f"{arrays[0].shape} and bool"
+            )
+        return numpy.ascontiguousarray(answer)
+
+    return ask
+
+
 class Hits:
     """What N rays hit. Arrays of the geometry's type unless it says otherwise.
 
@@ -191,6 +253,47 @@ class Hits:
         """(N,) uint32: 0 where the ray came from outside (a triangle's side from which its vertices
         run counter-clockwise), 1 where it came from inside."""
         return self._point("side")
+
+
+class AllHits(Hits):
+    """All hits of rays, one ray's after the other's, each ray's in order: M of them.
+
+    What `Hits` has for each ray, this has for each hit. A sphere is hit twice, where the ray enters it
+    (u is 0) and where it leaves it (u is 1).
+    """
+
+    #: (M,): which ray hit there, by its place in the arrays that were given.
+    ray: NDArray[numpy.intp]
+    #: (N + 1,): ray i has the hits first[i] to first[i + 1].
+    first: NDArray[numpy.uintp]
+
+    def __init__(
+        self,
+        geometry: Any,
+        vectors: Tuple[_Numbers, _Numbers],
+        target: str,
+        found: Tuple[_Numbers, ...],
+    ):
+        super().__init__(geometry, None, target, found[1:])
+        self._vectors = vectors
+        self.first = found[0]
+        counts = numpy.diff(self.first.astype(numpy.intp))
+        self.ray = numpy.repeat(numpy.arange(len(counts)), counts)
+
+    @property
+    def count(self) -> NDArray[numpy.intp]:
+        """(N,): how many hits of each ray there are here."""
+        return numpy.diff(self.first.astype(numpy.intp))
+
+    def __repr__(self) -> str:
+        return f"<sheaf.AllHits: {len(self)} hits of {len(self.first) - 1} rays>"
+
+    def _point(self, name: str) -> _Numbers:
+        if self._rays is None:
+            kind = _sheaf.RaysFloat if self.t.dtype == numpy.float32 else _sheaf.RaysDouble
+            starts, ways = (numpy.ascontiguousarray(array[self.ray]) for array in self._vectors)
+            self._rays = kind(starts, ways, None)
+        return super()._point(name)
 
 
 class Geometry:
@@ -302,6 +405,10 @@ class Geometry:
         t_min: Optional[ArrayLike] = None,
         t_max: Optional[ArrayLike] = None,
         source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        filter: Optional[Filter] = None,
         coherence: str = "unknown",
         target: str = "auto",
     ) -> Hits:
@@ -320,13 +427,23 @@ class Geometry:
         neighbouring rays, which may change the time. target: "auto", or one of `targets()`. Neither
         changes a bit of the result.
 
+        These leave hits out; where none is given, nothing is slower. object_mask: a whole number of 32
+        bits an object; a hit counts where it has a bit in common with ray_mask, a number or (N,), all
+        bits by default. excluded: (N, K) or (K,), primitives that each ray or all do not hit. filter:
+        a function of `Candidates`, hits of several rays at a time, that returns a bool for each.
+
         One call runs on one thread; call from several for more. Raises UsageError where a shape, a
         type or a name does not fit.
         """
         rays, options = self._take(
             origins, directions, t_min, t_max, source, (coherence, target)
         )
-        return Hits(self._core, rays, target, self._core.closest(rays, options))
+        if object_mask is None and ray_mask is None and excluded is None and filter is None:
+            return Hits(self._core, rays, target, self._core.closest(rays, options))
+        count = len(_vectors(origins, directions, self._dtype)[0])
+        rules = _rules(self, count, object_mask, ray_mask, excluded)
+        found = self._core.ruled_closest(rays, options, rules, _filter(filter))
+        return Hits(self._core, rays, target, found)
 
     def occluded(
         self,
@@ -336,6 +453,10 @@ class Geometry:
         t_min: Optional[ArrayLike] = None,
         t_max: Optional[ArrayLike] = None,
         source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        filter: Optional[Filter] = None,
         coherence: str = "unknown",
         target: str = "auto",
     ) -> NDArray[numpy.bool_]:
@@ -343,7 +464,55 @@ class Geometry:
         rays, options = self._take(
             origins, directions, t_min, t_max, source, (coherence, target)
         )
-        return numpy.asarray(self._core.occluded(rays, options) != 0)
+        if object_mask is None and ray_mask is None and excluded is None and filter is None:
+            return numpy.asarray(self._core.occluded(rays, options) != 0)
+        count = len(_vectors(origins, directions, self._dtype)[0])
+        rules = _rules(self, count, object_mask, ray_mask, excluded)
+        found = self._core.ruled_occluded(rays, options, rules, _filter(filter))
+        return numpy.asarray(found != 0)
+
+    def all_hits(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        max_hits: Optional[int] = None,
+        t_min: Optional[ArrayLike] = None,
+        t_max: Optional[ArrayLike] = None,
+        source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        target: str = "auto",
+    ) -> AllHits:
+        """All hits of each ray, by t, of equal t the lowest primitive first: at most the nearest
+        max_hits of each ray. A ray through an edge hits both triangles there. Else as `closest`."""
+        if max_hits is not None and max_hits < 0:
+            raise UsageError(f"max_hits: {max_hits} is below 0")
+        rays, options = self._take(origins, directions, t_min, t_max, source, ("unknown", target))
+        vectors = _vectors(origins, directions, self._dtype)
+        rules = _rules(self, len(vectors[0]), object_mask, ray_mask, excluded)
+        most = 2**32 - 1 if max_hits is None else min(max_hits, 2**32 - 1)
+        return AllHits(self._core, vectors, target, self._core.all(rays, options, rules, most))
+
+    def count_hits(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        t_min: Optional[ArrayLike] = None,
+        t_max: Optional[ArrayLike] = None,
+        source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        target: str = "auto",
+    ) -> NDArray[numpy.uint32]:
+        """(N,) uint32: how many hits each ray has. Else as `all_hits`."""
+        rays, options = self._take(origins, directions, t_min, t_max, source, ("unknown", target))
+        count = len(_vectors(origins, directions, self._dtype)[0])
+        rules = _rules(self, count, object_mask, ray_mask, excluded)
+        return numpy.asarray(self._core.count(rays, options, rules))
 
     def __repr__(self) -> str:
         return f"<sheaf.Geometry: {self.first_primitives[-1]} primitives, {self._dtype}>"
