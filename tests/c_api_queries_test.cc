@@ -141,5 +141,78 @@ TEST_CASE("rules and filters") {
   CHECK(Says("excluded is null"));
 }
 
+TEST_CASE("places") {
+  Both both;
+  const sheaf_geometry* const geometry = both.in_c.handle;
+  const std::vector<float>& x = both.objects.vertices;  // rows of three numbers
+  constexpr std::size_t kCount = 180, kRow = 3 * sizeof(float);
+  const PointArrays points = {&x[0], &x[1], &x[2], kRow};
+  sheaf_points in_c = SHEAF_POINTS_INIT;
+  in_c.count = kCount;
+  in_c.x = &x[0], in_c.y = &x[1], in_c.z = &x[2];
+  in_c.stride = kRow;
+  std::vector<std::uint32_t> expected(kCount), got(kCount);
+
+  REQUIRE(CountCrossings(both.geometry, both.lists.view(), kCount, expected.data(),
+                         both.expected_options));
+  both.rays.count = kCount;
+  REQUIRE(sheaf_count_crossings(geometry, &both.rays, got.data(), &both.options, nullptr) ==
+          SHEAF_OK);
+  CHECK(expected == got);
+  REQUIRE(FindInside(both.geometry, points, kCount, expected.data()));
+  REQUIRE(sheaf_find_inside(geometry, &in_c, got.data(), nullptr, "scalar") == SHEAF_OK);
+  CHECK(expected == got);
+  CHECK(sheaf_find_inside(geometry, &in_c, got.data(), nullptr, "none") == SHEAF_USAGE);
+  CHECK(Says("this processor has"));
+
+  std::vector<float> distance(kCount), got_distance(kCount), y(kCount), got_y(kCount);
+  sheaf_nearest nearest = SHEAF_NEAREST_INIT;
+  nearest.distance = got_distance.data();
+  nearest.primitive = got.data();
+  nearest.position[1] = got_y.data();
+  const NearestArrays arrays = {
+      distance.data(), expected.data(), nullptr, {nullptr, y.data(), nullptr}};
+  sheaf_nearest_options options = SHEAF_NEAREST_OPTIONS_INIT;
+  options.is_signed = 1;
+  options.all_max_distance = 0.25f;
+  const std::vector<std::uint32_t> masks = {1, 0, 1, 1};
+  sheaf_hit_rules rules = SHEAF_HIT_RULES_INIT;
+  rules.object_mask = masks.data();
+  REQUIRE(FindNearest(both.geometry, points, kCount, arrays,
+                      {.all_max_distance = 0.25f,
+                       .rules = {.object_mask = masks.data()},
+                       .sign = DistanceSign::kInside}));
+  REQUIRE(sheaf_find_nearest(geometry, &in_c, &nearest, &options, &rules) == SHEAF_OK);
+  CHECK(expected == got);
+  CHECK(distance == got_distance);
+  CHECK(y == got_y);
+  CHECK(sheaf_find_nearest(geometry, nullptr, &nearest, nullptr, nullptr) == SHEAF_USAGE);
+  CHECK(Says("points is NULL"));
+
+  std::vector<std::uint32_t> ids(4 * kCount), got_ids(4 * kCount);
+  const OverlapLists lists = {4, ids.data(), nullptr, expected.data()};
+  sheaf_overlaps overlaps = SHEAF_OVERLAPS_INIT;
+  overlaps.capacity = 4;
+  overlaps.primitive = got_ids.data();
+  overlaps.total = got.data();
+  std::vector<float> radius(3 * kCount, 0.75f);
+  REQUIRE(FindInBalls(both.geometry, points, radius.data(), kCount, lists));
+  REQUIRE(sheaf_find_in_balls(geometry, &in_c, radius.data(), &overlaps) == SHEAF_OK);
+  CHECK(ids == got_ids);
+  CHECK(expected == got);
+  std::vector<float> corner = x;
+  for (float& c : corner) c += 0.5f;
+  sheaf_points upper = in_c;
+  upper.x = &corner[0], upper.y = &corner[1], upper.z = &corner[2];
+  REQUIRE(FindInBoxes(both.geometry,
+                      BoxArrays{{&x[0], &x[1], &x[2]}, {&corner[0], &corner[1], &corner[2]}, kRow},
+                      kCount, lists));
+  REQUIRE(sheaf_find_in_boxes(geometry, &in_c, &upper, &overlaps) == SHEAF_OK);
+  CHECK(ids == got_ids);
+  CHECK(expected == got);
+  upper.count = 1;
+  CHECK(sheaf_find_in_boxes(geometry, &in_c, &upper, &overlaps) == SHEAF_USAGE);
+}
+
 }  // namespace
 }  // namespace sheaf

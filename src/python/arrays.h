@@ -5,10 +5,12 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sheaf/geometry.h"
 #include "sheaf/target.h"
@@ -99,6 +101,17 @@ struct Hits {
             v.mutable_data()};
   }
 };
+
+// x, y and z apart in memory, as the library writes them; of shape (N, 3) to Python.
+template <typename Real>
+py::array_t<Real> Columns(std::size_t count, std::array<Real*, 3>* into) {
+  const auto rows = static_cast<py::ssize_t>(count);
+  const py::ssize_t size = sizeof(Real);
+  py::array_t<Real> array(std::vector<py::ssize_t>{rows, 3},
+                          std::vector<py::ssize_t>{size, size * rows});
+  for (std::size_t k = 0; k < 3; ++k) (*into)[k] = array.mutable_data() + k * count;
+  return array;
+}
 
 // The calls of <sheaf/queries.h>.
 template <typename Real>

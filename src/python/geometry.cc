@@ -112,17 +112,6 @@ Ids Occluded(const GeometryOf<Real>& geometry, const Rays<Real>& rays,
   return occluded;
 }
 
-// x, y and z apart in memory, as the library writes them; of shape (N, 3) to Python.
-template <typename Real>
-py::array_t<Real> Columns(std::size_t count, std::array<Real*, 3>* into) {
-  const auto rows = static_cast<py::ssize_t>(count);
-  const py::ssize_t size = sizeof(Real);
-  py::array_t<Real> array(std::vector<py::ssize_t>{rows, 3},
-                          std::vector<py::ssize_t>{size, size * rows});
-  for (std::size_t k = 0; k < 3; ++k) (*into)[k] = array.mutable_data() + k * count;
-  return array;
-}
-
 template <typename Real>
 py::dict Points(const GeometryOf<Real>& geometry, const Rays<Real>& rays, const py::tuple& found,
                 const std::string& target) {

@@ -97,3 +97,64 @@ def test_what_is_wrong_is_named(geometry):
 
     with pytest.raises(KeyError, match="mine"):
         geometry.closest(ORIGINS, DIRECTIONS, filter=fails)
+
+
+def cube(half, center=(0, 0, 0)):
+    corners = numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6]]
+    return corners * half + center, numpy.array([*faces, [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+
+
+def test_inside_and_crossings():
+    geometry = sheaf.Geometry(*cube(1), spheres=[[5, 0, 0, 1]])
+    points = numpy.random.default_rng(1).uniform(-2, 6, (3000, 3)).astype(numpy.float32)
+    points[:500] = numpy.round(points[:500]) + numpy.float32(0.5) * (numpy.arange(500) % 2)[:, None]
+    points = points[(abs(abs(points) - 1) > 1e-5).all(1)]
+    in_cube = (abs(points) < 1).all(1)
+    in_ball = ((points - [5, 0, 0]) ** 2).sum(1) < 1
+    assert in_cube.any() and in_ball.any()
+    assert (geometry.inside(points) == (in_cube | in_ball)).all()
+    assert (geometry.inside(points, object_mask=[1, 2], point_mask=2) == in_ball).all()
+    corner = geometry.count_crossings((0, 0, 0), numpy.array([[1, 1, 1], [1, 1, 0], [0, 1, 0]]))
+    assert corner.tolist() == [1, 1, 1]
+    assert geometry.count_hits((0, 0, 0), [[1, 1, 1]]).tolist() != [1]
+
+
+def test_nearest():
+    geometry = sheaf.Geometry(*cube(1), spheres=[[5, 0, 0, 1]], dtype=numpy.float64)
+    points = numpy.random.default_rng(2).uniform(-2, 6, (3000, 3))
+    out = numpy.maximum(abs(points) - 1, 0)
+    of_cube = numpy.where((out == 0).all(1), (1 - abs(points)).min(1), numpy.linalg.norm(out, axis=1))
+    of_ball = abs(numpy.linalg.norm(points - [5, 0, 0], axis=1) - 1)
+    nearest = geometry.nearest(points, signed=True)
+    numpy.testing.assert_allclose(abs(nearest.distance), numpy.minimum(of_cube, of_ball), atol=1e-14)
+    assert ((nearest.distance < 0) == geometry.inside(points)).all()
+    assert ((nearest.object == 1) == (of_ball < of_cube)).all()
+    way = numpy.linalg.norm(nearest.point - points, axis=1)
+    numpy.testing.assert_allclose(way, abs(nearest.distance), atol=1e-14)
+    near = geometry.nearest(points, max_distance=0.5)
+    far = numpy.minimum(of_cube, of_ball) > 0.5
+    assert (near.primitive[far] == sheaf.NO_PRIMITIVE).all() and (near.distance[far] == 0.5).all()
+    only = geometry.nearest(points, object_mask=[1, 2], point_mask=1)
+    numpy.testing.assert_allclose(only.distance, of_cube, atol=1e-14)
+
+
+def test_overlaps():
+    geometry = sheaf.Geometry(VERTICES, FACES)
+    some = numpy.random.default_rng(3).uniform(-3, 3, (200, 3)).astype(numpy.float32)
+    balls = numpy.concatenate([some, numpy.full((200, 1), 0.4, numpy.float32)], 1)
+    found = geometry.in_balls(balls)
+    assert found.count.max() > 3 and (numpy.diff(found.region) >= 0).all()
+    for i in range(0, 200, 9):
+        mine = found.primitive[found.region == i]
+        apart = [k for k in range(100) if sheaf.Geometry(VERTICES, FACES[[k]]).nearest(some[[i]]).distance[0] <= 0.4]
+        assert mine.tolist() == apart
+    boxes = geometry.in_boxes(some - 0.4, some + 0.4)
+    around = geometry.in_boxes([-9, -9, -9], [9, 9, 9])
+    assert around.primitive.tolist() == list(range(100))
+    # Each box holds its ball.
+    for i in range(200):
+        assert set(found.primitive[found.region == i]) <= set(boxes.primitive[boxes.region == i])
+    assert (boxes.count >= found.count).all()
+    with pytest.raises(sheaf.UsageError, match="balls"):
+        geometry.in_balls([[0, 0, 0]])

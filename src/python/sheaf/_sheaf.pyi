@@ -2,7 +2,7 @@
 
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
-from numpy import bool_, float32, float64, uint32
+from numpy import bool_, float32, float64, uint32, uintp
 from numpy.typing import NDArray
 
 __version__: str
@@ -76,6 +76,21 @@ class GeometryFloat:
     def all(
         self, rays: RaysFloat, options: OptionsFloat, rules: _Rules, most: int
     ) -> Tuple[NDArray[Any], ...]: ...
+    def crossings(
+        self, rays: RaysFloat, options: OptionsFloat, rules: _Rules
+    ) -> NDArray[uint32]: ...
+    def inside(self, points: NDArray[float32], rules: _Rules) -> NDArray[uint32]: ...
+    def nearest(
+        self,
+        points: NDArray[float32],
+        max_distance: Optional[NDArray[float32]],
+        is_signed: bool,
+        rules: _Rules,
+    ) -> Tuple[NDArray[Any], ...]: ...
+    def in_boxes(
+        self, lower: NDArray[float32], upper: NDArray[float32]
+    ) -> Tuple[NDArray[uintp], NDArray[uint32]]: ...
+    def in_balls(self, balls: NDArray[float32]) -> Tuple[NDArray[uintp], NDArray[uint32]]: ...
     def points(
         self, rays: RaysFloat, hits: Tuple[NDArray[Any], ...], target: str
     ) -> Dict[str, NDArray[Any]]: ...
@@ -97,6 +112,21 @@ class GeometryDouble:
     def all(
         self, rays: RaysDouble, options: OptionsDouble, rules: _Rules, most: int
     ) -> Tuple[NDArray[Any], ...]: ...
+    def crossings(
+        self, rays: RaysDouble, options: OptionsDouble, rules: _Rules
+    ) -> NDArray[uint32]: ...
+    def inside(self, points: NDArray[float64], rules: _Rules) -> NDArray[uint32]: ...
+    def nearest(
+        self,
+        points: NDArray[float64],
+        max_distance: Optional[NDArray[float64]],
+        is_signed: bool,
+        rules: _Rules,
+    ) -> Tuple[NDArray[Any], ...]: ...
+    def in_boxes(
+        self, lower: NDArray[float64], upper: NDArray[float64]
+    ) -> Tuple[NDArray[uintp], NDArray[uint32]]: ...
+    def in_balls(self, balls: NDArray[float64]) -> Tuple[NDArray[uintp], NDArray[uint32]]: ...
     def points(
         self, rays: RaysDouble, hits: Tuple[NDArray[Any], ...], target: str
     ) -> Dict[str, NDArray[Any]]: ...
