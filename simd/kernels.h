@@ -22,6 +22,7 @@
 #include "simd/spawn_rays.h"
 #include "simd/surfaces.h"
 #include "simd/target.h"
+#include "simd/trace_all.h"
 #include "simd/trace_closest.h"
 #include "simd/trace_occluded.h"
 
@@ -38,6 +39,7 @@
   X(SampleTexture, sample_texture)       \
   X(ScatterDiffuse, scatter_diffuse)     \
   X(ShadeAmbient, shade_ambient)         \
+  X(TraceAll, trace_all)                 \
   X(FaceLight, face_light)               \
   X(GenerateShadow, generate_shadow)     \
   X(FindMedians, find_medians)           \

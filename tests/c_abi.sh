@@ -26,7 +26,7 @@ trap 'rm -rf "$work"' EXIT
 {
   echo '#include "sheaf/capi.h"'
   echo '#include <stdlib.h>'
-  sed 's|//.*||' src/sheaf/capi.h | tr '\n' ' ' | grep -oE 'SHEAF_API [^;]*;' | sed 's/^SHEAF_API //; s/;$/ { abort(); }/'
+  sed 's|//.*||' src/sheaf/capi*.h | tr '\n' ' ' | grep -oE 'SHEAF_API [^;]*;' | sed 's/^SHEAF_API //; s/;$/ { abort(); }/'
 } >"$work/interface.c"
 "${CC:-cc}" -std=c99 -g -O0 -fPIC -shared -I src "$work/interface.c" -o "$work/libinterface.so"
 abidw --no-corpus-path --no-show-locs --no-comp-dir-path --type-id-style hash "$work/libinterface.so" >"$work/now.abi"

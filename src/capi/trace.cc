@@ -1,6 +1,7 @@
 // Geometries of <sheaf/capi.h>: building them and tracing rays.
 #include <span>
 
+#include "src/capi/batch.h"
 #include "src/capi/handles.h"
 
 namespace sheaf::capi {
@@ -89,48 +90,6 @@ Status GetStatistics(const sheaf_geometry* geometry, sheaf_geometry_statistics* 
   return Put(own, "statistics", statistics);
 }
 
-// A batch as the C++ library takes it.
-struct Batch {
-  RayArrays rays;
-  std::size_t count = 0;
-  TraceOptions options;
-};
-
-Result<Batch> TakeRays(const sheaf_geometry* geometry, const sheaf_rays* given) {
-  if (geometry == nullptr) return UsageError("geometry is NULL");
-  sheaf_rays rays = SHEAF_RAYS_INIT;
-  if (const Status taken = Take(given, "rays", &rays); !taken) return taken.error();
-  Batch batch;
-  batch.rays = {rays.origin_x,    rays.origin_y,    rays.origin_z, rays.direction_x,
-                rays.direction_y, rays.direction_z, rays.source,   rays.stride};
-  batch.count = rays.count;
-  return batch;
-}
-
-Result<Batch> TakeBatch(const sheaf_geometry* geometry, const sheaf_rays* rays,
-                        const sheaf_trace_options* given) {
-  Result<Batch> batch = TakeRays(geometry, rays);
-  if (!batch) return batch;
-  sheaf_trace_options options = SHEAF_TRACE_OPTIONS_INIT;
-  if (const Status taken = TakeIfGiven(given, "options", &options); !taken) return taken.error();
-  if (static_cast<unsigned>(options.coherence) > SHEAF_INCOHERENT) {
-    return UsageError("options: coherence is none of sheaf_coherence");
-  }
-  const Result<Target> target = TargetOf(options.target);
-  if (!target) return target.error();
-  batch.value().options = {.interval = {options.t_min, options.t_max, options.all_t_min,
-                                        options.all_t_max, options.interval_stride},
-                           .coherence = static_cast<RayCoherence>(options.coherence),
-                           .target = target.value()};
-  return batch;
-}
-
-Result<HitArrays> TakeHits(const sheaf_hits* given) {
-  sheaf_hits hits = SHEAF_HITS_INIT;
-  if (const Status taken = Take(given, "hits", &hits); !taken) return taken.error();
-  return HitArrays{hits.t, hits.primitive, hits.object, hits.u, hits.v, hits.stride};
-}
-
 std::array<float*, 3> Arrays(float* const (&from)[3]) { return {from[0], from[1], from[2]}; }
 
 Status FindPoints(const Batch& batch, const sheaf_geometry& geometry, const HitArrays& hits,
@@ -153,7 +112,6 @@ Status FindPoints(const Batch& batch, const sheaf_geometry& geometry, const HitA
 
 static_assert(SHEAF_NO_PRIMITIVE == Geometry::kNoPrimitive);
 static_assert(SHEAF_INSIDE_BIT == Geometry::kInsideBit);
-static_assert(SHEAF_INCOHERENT == static_cast<int>(RayCoherence::kIncoherent));
 
 }  // namespace
 }  // namespace sheaf::capi

@@ -13,17 +13,17 @@
 
 namespace sheaf::scalar {
 
-// A ray on its way through a tree, and what it has hit so far.
-template <Query kQuery, typename Real>
+// A ray on its way through a tree. What becomes of its hits is up to `Keeper`:
+//   void Test(ray, terms, arrays): takes the primitives of a leaf, and shortens the ray as it
+//   likes; bool is_done(): nothing more is wanted.
+template <class Keeper, typename Real>
 class TreeTracer {
  public:
-  TreeTracer(const TreeView<Real>& tree, const Ray<Real>& ray) : tree_(tree), ray_(ray) {
-    MakeFinite(ray_);
-    closest_.t = ray_.t_max;
-  }
+  TreeTracer(const TreeView<Real>& tree, const Ray<Real>& ray, Keeper& keeper)
+      : tree_(tree), ray_(ray), keeper_(keeper) {}
 
-  Hit<Real> Trace() {
-    if (tree_.node_count == 0 || !IsTraceable(ray_)) return closest_;
+  void Trace() {
+    if (tree_.node_count == 0 || !IsTraceable(ray_)) return;
     terms_.emplace(ray_);
     if (FitsBoxes(ray_)) {
       Walk<BoxTest::kPlain>(SlabsOf(tree_, ray_));
@@ -32,7 +32,6 @@ class TreeTracer {
     } else {
       TestEveryLeaf();
     }
-    return closest_;
   }
 
  private:
@@ -45,13 +44,11 @@ class TreeTracer {
     std::uint32_t child;
   };
 
-  bool is_done() const { return kQuery == Query::kOccluded && closest_.primitive != kNoPrimitive; }
-
   void TestEveryLeaf() {
     for (std::uint32_t i = 0; i < tree_.node_count; ++i) {
       for (const std::uint32_t child : tree_.nodes[i].child) {
         if (IsLeaf(child) && child != kNoChild) TestLeaf(child);
-        if (is_done()) return;
+        if (keeper_.is_done()) return;
       }
     }
   }
@@ -67,7 +64,7 @@ class TreeTracer {
       if (entry.enter > LastT<kTest, BoxReal>()) continue;
       if (IsLeaf(entry.child)) {
         TestLeaf(entry.child);
-        if (is_done()) return;
+        if (keeper_.is_done()) return;
         continue;
       }
       const std::uint32_t first = size;
@@ -130,28 +127,49 @@ class TreeTracer {
   void TestLeaf(std::uint32_t leaf) {
     WithKind<Real>(LeafKind(leaf), [&](auto arrays) {
       ShowLeaf(tree_, leaf, arrays);
-      ForEachHit(ray_, *terms_, arrays, [&](const Hit<Real>& hit) {
-        if (hit.t < closest_.t || hit.primitive < closest_.primitive) closest_ = hit;
-        ray_.t_max = closest_.t;
-        return !is_done();
-      });
+      keeper_.Test(ray_, *terms_, arrays);
     });
   }
 
   const TreeView<Real>& tree_;
   Ray<Real> ray_;
-  Hit<Real> closest_;
+  Keeper& keeper_;
   std::optional<RayTerms<Real>> terms_;
 };
 
+// Keeps the nearest hit, or any.
+template <Query kQuery, typename Real>
+struct HitKeeper {
+  Hit<Real> closest;
+
+  bool is_done() const { return kQuery == Query::kOccluded && closest.primitive != kNoPrimitive; }
+
+  template <typename Arrays>
+  void Test(Ray<Real>& ray, const RayTerms<Real>& terms, const Arrays& arrays) {
+    ForEachHit(ray, terms, arrays, [&](const Hit<Real>& hit) {
+      if (hit.t < closest.t || hit.primitive < closest.primitive) closest = hit;
+      ray.t_max = closest.t;
+      return !is_done();
+    });
+  }
+};
+
+template <Query kQuery, typename Real>
+Hit<Real> TraceTree(const TreeView<Real>& tree, Ray<Real> ray) {
+  MakeFinite(ray);
+  HitKeeper<kQuery, Real> keeper{{ray.t_max}};
+  TreeTracer(tree, ray, keeper).Trace();
+  return keeper.closest;
+}
+
 template <typename Real>
 Hit<Real> TraceClosest(const TreeView<Real>& tree, const Ray<Real>& ray) {
-  return TreeTracer<Query::kClosest, Real>(tree, ray).Trace();
+  return TraceTree<Query::kClosest>(tree, ray);
 }
 
 template <typename Real>
 bool TraceOccluded(const TreeView<Real>& tree, const Ray<Real>& ray) {
-  return TreeTracer<Query::kOccluded, Real>(tree, ray).Trace().primitive != kNoPrimitive;
+  return TraceTree<Query::kOccluded>(tree, ray).primitive != kNoPrimitive;
 }
 
 }  // namespace sheaf::scalar

@@ -405,4 +405,6 @@ SHEAF_API sheaf_status sheaf_film_write(const sheaf_film* film, const char* path
 #endif
 // NOLINTEND
 
+#include "sheaf/capi_queries.h"  // IWYU pragma: export
+
 #endif  // SHEAF_SHEAF_CAPI_H_

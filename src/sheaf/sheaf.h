@@ -7,6 +7,7 @@
 #include "sheaf/formats.h"
 #include "sheaf/geometry.h"
 #include "sheaf/instances.h"
+#include "sheaf/queries.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "sheaf/stats.h"

@@ -156,15 +156,15 @@ def test_any_layout_gives_the_same_bits(starts, ways):
 
 
 def test_arrays_of_the_right_type_are_read_in_place():
-    from sheaf import _geometry
+    from sheaf import _arrays
 
     f32 = numpy.dtype(numpy.float32)
     for layout in ("rows", "columns", "part of a table", "every second", "read-only"):
         origins, directions = LAYOUTS[layout](ORIGINS), LAYOUTS[layout](DIRECTIONS)
-        starts, ways = _geometry._vectors(origins, directions, f32)
+        starts, ways = _arrays.vectors_of(origins, directions, f32)
         assert numpy.shares_memory(starts, origins) and numpy.shares_memory(ways, directions)
-    assert numpy.shares_memory(_geometry._table("vertices", VERTICES, f32, 3), VERTICES)
-    assert numpy.shares_memory(_geometry._indices("faces", FACES), FACES)
+    assert numpy.shares_memory(_arrays.table_of("vertices", VERTICES, f32, 3), VERTICES)
+    assert numpy.shares_memory(_arrays.indices_of("faces", FACES), FACES)
 
 
 def test_no_rays_and_no_objects():

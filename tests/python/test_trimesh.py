@@ -105,6 +105,11 @@ def test_points_inside():
     inside = ((points[:, None] - edges[None, :, 0]) * normals).sum(-1).max(1) < 0  # it is convex
     assert 500 < inside.sum() < 1500
     assert (RayMeshIntersector(ball).contains_points(points) == inside).all()
+    # Rays along x meet vertices and edges of this one, and its faces may show any way.
+    ball.faces[::2] = ball.faces[::2, ::-1]
+    middle = numpy.zeros((41, 3))
+    middle[:, 0] = numpy.linspace(-2, 2, 41)
+    assert (RayMeshIntersector(ball).contains_points(middle) == (abs(middle[:, 0]) < 0.999)).all()
     ball.is_watertight = False
     with pytest.raises(ValueError):
         RayMeshIntersector(ball).contains_points(points)

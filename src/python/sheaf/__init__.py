@@ -19,7 +19,9 @@ released while rays are traced, trees are built and frames are rendered; leave t
 meanwhile.
 """
 
-from ._geometry import INSIDE_BIT, NO_PRIMITIVE, Geometry, Hits
+from ._arrays import INSIDE_BIT, NO_PRIMITIVE, Candidates
+from ._geometry import Geometry
+from ._hits import AllHits, Hits, Nearest, Overlaps
 from ._scene import Camera, Scene, parse_scene, read_picture, read_scene, write_picture
 from ._sheaf import (
     Error,
@@ -35,11 +37,15 @@ from ._sheaf import (
 __all__ = [
     "INSIDE_BIT",
     "NO_PRIMITIVE",
+    "AllHits",
     "Camera",
+    "Candidates",
     "Error",
     "FileError",
     "Geometry",
     "Hits",
+    "Nearest",
+    "Overlaps",
     "Scene",
     "SceneError",
     "StoppedError",

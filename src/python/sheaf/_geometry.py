@@ -1,4 +1,4 @@
-"""Geometries and rays: what a user gives becomes arrays that the library reads in place."""
+"""Triangles, spheres and disks, and rays against them."""
 
 from __future__ import annotations
 
@@ -8,192 +8,13 @@ import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _sheaf
+from ._arrays import Filter, filter_of, indices_of, table_of, vectors_of
+from ._hits import Hits
+from ._queries import Queries
 from ._sheaf import UsageError
 
-#: In place of a primitive's or an object's number: none, the ray missed.
-NO_PRIMITIVE: int = _sheaf.NO_PRIMITIVE
-#: With a sphere's number as a ray's source: the ray runs inside the sphere.
-INSIDE_BIT: int = _sheaf.INSIDE_BIT
 
-# By the number that the extension has for them.
-_COHERENCE = ("unknown", "common origin", "coherent", "incoherent")
-
-_Numbers = NDArray[Any]
-_Core = Any  # _sheaf.GeometryFloat or GeometryDouble, which have the same methods
-
-
-def _table(name: str, values: ArrayLike, dtype: DTypeLike, columns: int) -> _Numbers:
-    """An array of shape (N, columns) without gaps: `values` itself where it is one."""
-    array = numpy.asarray(values)
-    if array.ndim != 2 or array.shape[1] != columns:
-        raise UsageError(f"{name}: shape {array.shape}, not (N, {columns})")
-    return numpy.require(_numbers(name, array, dtype), requirements=("C", "ALIGNED"))
-
-
-def _numbers(name: str, array: _Numbers, dtype: DTypeLike) -> _Numbers:
-    if array.dtype.kind not in "fiub":
-        raise UsageError(f"{name}: an array of {array.dtype}, not of numbers")
-    # What a smaller type cannot hold becomes infinite, and is then an error or a miss.
-    with numpy.errstate(over="ignore"):
-        return array.astype(dtype, copy=False)
-
-
-def _indices(name: str, values: ArrayLike) -> _Numbers:
-    """Numbers that fit 32 bits; any that do not are an error here and not another number."""
-    array = numpy.asarray(values)
-    if array.dtype.kind not in "iu" and array.size > 0:
-        raise UsageError(f"{name}: an array of {array.dtype}, not of whole numbers")
-    if array.dtype != numpy.uint32:
-        if array.size > 0 and not 0 <= int(array.min()) <= int(array.max()) < 2**32:
-            raise UsageError(f"{name}: below 0 or 2^32 and above")
-        array = array.astype(numpy.uint32)
-    return array
-
-
-def _is_usable(array: _Numbers, dtype: numpy.dtype[Any]) -> bool:
-    """Whether the library can read rows of this array where they lie."""
-    return (
-        array.dtype == dtype
-        and array.dtype.isnative
-        and array.flags.aligned
-        and array.strides[0] > 0
-        and all(stride % dtype.itemsize == 0 for stride in array.strides)
-    )
-
-
-def _vectors(
-    origins: ArrayLike, directions: ArrayLike, dtype: numpy.dtype[Any]
-) -> Tuple[_Numbers, _Numbers]:
-    """Both of shape (N, 3) and with rows equally far apart. One of shape (3,) stands for all rays."""
-    arrays = []
-    for name, values in (("origins", origins), ("directions", directions)):
-        array = _numbers(name, numpy.asarray(values), dtype)
-        if array.ndim not in (1, 2) or array.shape[-1] != 3:
-            raise UsageError(f"{name}: shape {array.shape}, not (N, 3) or (3,)")
-        arrays.append(array)
-    rows = [len(array) for array in arrays if array.ndim == 2]
-    count = rows[0] if rows else 1
-    if any(row != count for row in rows):
-        raise UsageError(f"origins have {rows[0]} rows, directions {rows[1]}")
-    arrays = [numpy.broadcast_to(array, (count, 3)) for array in arrays]
-    if not all(_is_usable(array, dtype) for array in arrays) or (
-        arrays[0].strides[0] != arrays[1].strides[0]
-    ):
-        arrays = [numpy.array(array, dtype, order="C") for array in arrays]
-    return arrays[0], arrays[1]
-
-
-def _sources(values: Optional[ArrayLike], count: int, stride: int) -> Optional[_Numbers]:
-    """The primitives that rays start on, as far apart as the rays are."""
-    if values is None:
-        return None
-    array = _indices("source", values)
-    if array.shape != (count,):
-        raise UsageError(f"source: shape {array.shape}, not ({count},)")
-    if count == 0 or array.strides[0] == stride and array.flags.aligned:
-        return array
-    wide = numpy.empty((count, stride // 4), numpy.uint32)
-    wide[:, 0] = array
-    return wide[:, 0]
-
-
-def _limits(
-    name: str, values: Optional[ArrayLike], count: int, dtype: DTypeLike
-) -> Optional[_Numbers]:
-    if values is None:
-        return None
-    array = _numbers(name, numpy.asarray(values), dtype)
-    if array.shape not in ((), (count,)):
-        raise UsageError(f"{name}: shape {array.shape}, not () or ({count},)")
-    return numpy.require(array, requirements=("C", "ALIGNED"))
-
-
-class Hits:
-    """What N rays hit. Arrays of the geometry's type unless it says otherwise.
-
-    `normal`, `point` and the others from there on are computed when the first of them is asked for,
-    from the arrays of rays that `closest` was given, which must not have changed. All 0, and sources
-    NO_PRIMITIVE, where a ray missed.
-    """
-
-    #: (N,): the distance in lengths of the direction; t_max where the ray missed.
-    t: _Numbers
-    #: (N,) uint32: the primitive's number, through all objects; NO_PRIMITIVE where the ray missed.
-    primitive: NDArray[numpy.uint32]
-    #: (N,) uint32: the object's number; NO_PRIMITIVE where the ray missed.
-    object: NDArray[numpy.uint32]
-    #: (N,): where on the primitive: of a triangle the weight of its second vertex.
-    u: _Numbers
-    #: (N,): likewise of its third vertex.
-    v: _Numbers
-
-    def __init__(self, geometry: Any, rays: Any, target: str, arrays: Tuple[_Numbers, ...]):
-        self._geometry = geometry
-        self._rays = rays
-        self._target = target
-        self._points: Optional[Dict[str, _Numbers]] = None
-        self.t, self.primitive, self.object, self.u, self.v = arrays
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"<sheaf.Hits: {int(self.hit.sum())} of {len(self)} rays hit>"
-
-    @property
-    def hit(self) -> NDArray[numpy.bool_]:
-        """(N,) bool: whether the ray hit anything."""
-        return numpy.asarray(self.primitive != NO_PRIMITIVE)
-
-    def _point(self, name: str) -> _Numbers:
-        if self._points is None:
-            found = (self.t, self.primitive, self.u, self.v)
-            self._points = self._geometry.points(self._rays, found, self._target)
-        return self._points[name]
-
-    @property
-    def point(self) -> _Numbers:
-        """(N, 3): the place on the surface, to a rounding."""
-        return self._point("point")
-
-    @property
-    def normal(self) -> _Numbers:
-        """(N, 3): unit, of the vertices' normals where there are any, on the ray's side."""
-        return self._point("normal")
-
-    @property
-    def face_normal(self) -> _Numbers:
-        """(N, 3): unit, of the surface itself, towards the ray."""
-        return self._point("face_normal")
-
-    @property
-    def front(self) -> _Numbers:
-        """(N, 3): a little off the surface on the ray's side: where shadows and mirrors start."""
-        return self._point("front")
-
-    @property
-    def back(self) -> _Numbers:
-        """(N, 3): a little off the surface on the other side: where what passes through starts."""
-        return self._point("back")
-
-    @property
-    def front_source(self) -> NDArray[numpy.uint32]:
-        """(N,) uint32: what `source` has to be for rays from `front`."""
-        return self._point("front_source")
-
-    @property
-    def back_source(self) -> NDArray[numpy.uint32]:
-        """(N,) uint32: what `source` has to be for rays from `back`."""
-        return self._point("back_source")
-
-    @property
-    def side(self) -> NDArray[numpy.uint32]:
-        """(N,) uint32: 0 where the ray came from outside (a triangle's side from which its vertices
-        run counter-clockwise), 1 where it came from inside."""
-        return self._point("side")
-
-
-class Geometry:
+class Geometry(Queries):
     """Triangles, spheres and disks, with a tree over them. It never changes.
 
     vertices: (V, 3), finite. faces: (F, 3) whole numbers below V. normals: (V, 3), for `Hits.normal`.
@@ -233,19 +54,19 @@ class Geometry:
         if vertices is not None or faces is not None:
             if vertices is None or faces is None:
                 raise UsageError("vertices and faces: one without the other")
-            mesh = _table("vertices", vertices, self._dtype, 3)
-            ids = _indices("faces", faces)
+            mesh = table_of("vertices", vertices, self._dtype, 3)
+            ids = indices_of("faces", faces)
             if ids.ndim != 2 or ids.shape[1] != 3:
                 raise UsageError(f"faces: shape {ids.shape}, not (N, 3)")
-            smooth = None if normals is None else _table("normals", normals, self._dtype, 3)
+            smooth = None if normals is None else table_of("normals", normals, self._dtype, 3)
             objects.append(("triangles", mesh, numpy.require(ids, requirements=("C", "ALIGNED")), smooth))
         elif normals is not None:
             raise UsageError("normals: there are no vertices")
         if spheres is not None:
-            objects.append(("spheres", _table("spheres", spheres, self._dtype, 4)))
+            objects.append(("spheres", table_of("spheres", spheres, self._dtype, 4)))
         if disks is not None:
-            objects.append(("disks", _table("disks", disks, self._dtype, 7)))
-        self._core: _Core = kinds[self._dtype.name](objects, threads, not_finite)
+            objects.append(("disks", table_of("disks", disks, self._dtype, 7)))
+        self._core = kinds[self._dtype.name](objects, threads, not_finite)
 
     @property
     def dtype(self) -> numpy.dtype[Any]:
@@ -269,31 +90,6 @@ class Geometry:
         """(objects + 1,) uint32: the first primitive of each object, and the number of all."""
         return numpy.asarray(self._core.first_primitives())
 
-    def _take(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        t_min: Optional[ArrayLike],
-        t_max: Optional[ArrayLike],
-        source: Optional[ArrayLike],
-        kind: Tuple[str, str],
-    ) -> Tuple[Any, Any]:
-        starts, ways = _vectors(origins, directions, self._dtype)
-        count = len(starts)
-        coherence, target = kind
-        if coherence not in _COHERENCE:
-            raise UsageError(f'coherence: "{coherence}" is none of {", ".join(_COHERENCE)}')
-        low = _limits("t_min", t_min, count, self._dtype)
-        high = _limits("t_max", t_max, count, self._dtype)
-        sources = _sources(source, count, starts.strides[0])
-        is_float = self._dtype == numpy.float32
-        rays = _sheaf.RaysFloat if is_float else _sheaf.RaysDouble
-        options = _sheaf.OptionsFloat if is_float else _sheaf.OptionsDouble
-        return (
-            rays(starts, ways, sources),
-            options(low, high, _COHERENCE.index(coherence), target),
-        )
-
     def closest(
         self,
         origins: ArrayLike,
@@ -302,6 +98,10 @@ class Geometry:
         t_min: Optional[ArrayLike] = None,
         t_max: Optional[ArrayLike] = None,
         source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        filter: Optional[Filter] = None,
         coherence: str = "unknown",
         target: str = "auto",
     ) -> Hits:
@@ -320,13 +120,23 @@ class Geometry:
         neighbouring rays, which may change the time. target: "auto", or one of `targets()`. Neither
         changes a bit of the result.
 
+        These leave hits out; where none is given, nothing is slower. object_mask: a whole number of 32
+        bits an object; a hit counts where it has a bit in common with ray_mask, a number or (N,), all
+        bits by default. excluded: (N, K) or (K,), primitives that each ray or all do not hit. filter:
+        a function of `Candidates`, hits of several rays at a time, that returns a bool for each.
+
         One call runs on one thread; call from several for more. Raises UsageError where a shape, a
         type or a name does not fit.
         """
         rays, options = self._take(
             origins, directions, t_min, t_max, source, (coherence, target)
         )
-        return Hits(self._core, rays, target, self._core.closest(rays, options))
+        if object_mask is None and ray_mask is None and excluded is None and filter is None:
+            return Hits(self._core, rays, target, self._core.closest(rays, options))
+        count = len(vectors_of(origins, directions, self._dtype)[0])
+        rules = self._ruled(count, object_mask, ray_mask, excluded)
+        found = self._core.ruled_closest(rays, options, rules, filter_of(filter))
+        return Hits(self._core, rays, target, found)
 
     def occluded(
         self,
@@ -336,6 +146,10 @@ class Geometry:
         t_min: Optional[ArrayLike] = None,
         t_max: Optional[ArrayLike] = None,
         source: Optional[ArrayLike] = None,
+        object_mask: Optional[ArrayLike] = None,
+        ray_mask: Optional[ArrayLike] = None,
+        excluded: Optional[ArrayLike] = None,
+        filter: Optional[Filter] = None,
         coherence: str = "unknown",
         target: str = "auto",
     ) -> NDArray[numpy.bool_]:
@@ -343,7 +157,12 @@ class Geometry:
         rays, options = self._take(
             origins, directions, t_min, t_max, source, (coherence, target)
         )
-        return numpy.asarray(self._core.occluded(rays, options) != 0)
+        if object_mask is None and ray_mask is None and excluded is None and filter is None:
+            return numpy.asarray(self._core.occluded(rays, options) != 0)
+        count = len(vectors_of(origins, directions, self._dtype)[0])
+        rules = self._ruled(count, object_mask, ray_mask, excluded)
+        found = self._core.ruled_occluded(rays, options, rules, filter_of(filter))
+        return numpy.asarray(found != 0)
 
     def __repr__(self) -> str:
         return f"<sheaf.Geometry: {self.first_primitives[-1]} primitives, {self._dtype}>"

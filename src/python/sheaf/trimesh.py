@@ -22,9 +22,6 @@ _Identified = Union[Tuple[_Indices, _Indices], Tuple[_Indices, _Indices, _Floats
 # through an edge meets both its triangles there, and counts once, as with trimesh.
 _SAME_PLACE = 1e-12
 
-# No axis and no diagonal lies along them, so that rays seldom meet edges of meshes that people make.
-_WAYS_OUT = numpy.array([[0.4395, 0.6170, 0.6528], [-0.7071, 0.2311, 0.6683], [0.1927, -0.8713, 0.4513]])
-
 
 class RayMeshIntersector:
     """Rays against a mesh. The tree is built once, of the mesh as it is now."""
@@ -83,47 +80,33 @@ class RayMeshIntersector:
         return self._geometry.occluded(ray_origins, ray_directions)
 
     def contains_points(self, points: ArrayLike) -> NDArray[numpy.bool_]:
-        """(N,) bool: whether each point lies inside a closed mesh whose triangles all face outward.
-
-        The first triangle on the way out is seen from inside. Three ways decide by majority. What
-        lies on the surface is on either side. Raises ValueError for a mesh that says that it is not
-        closed.
+        """(N,) bool: whether each point lies inside a closed mesh: a ray from there crosses it an odd
+        number of times, edges and vertices counted exactly. What lies on the surface is on either
+        side. Raises ValueError for a mesh that says that it is not closed.
         """
         if not getattr(self.mesh, "is_watertight", True):
             raise ValueError("the mesh is not closed: it has no inside")
-        places = numpy.asarray(points, numpy.float64)
-        votes = numpy.zeros(len(places), numpy.int64)
-        for way in _WAYS_OUT:
-            hits = self._geometry.closest(places, way)
-            votes += hits.hit & (hits.side == 1)
-        return votes * 2 > len(_WAYS_OUT)
+        return self._geometry.inside(points)
 
     def _hits(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, most: Optional[int]
     ) -> Tuple[_Indices, _Indices, _Floats]:
-        """The triangle, the ray and the place of each hit, round by round."""
-        origins = numpy.array(ray_origins, numpy.float64)
-        directions = numpy.array(ray_directions, numpy.float64)
-        rays = numpy.arange(len(origins))
-        t_min: Any = None
-        source: Any = None
-        triangles, indices, places = [], [], []
-        rounds = 0
-        while len(rays) > 0 and (most is None or rounds < most):
-            hits = self._geometry.closest(
-                origins[rays], directions[rays], t_min=t_min, source=source
-            )
-            found = hits.hit
-            rays = rays[found]
-            triangles.append(hits.primitive[found].astype(numpy.int64))
-            indices.append(rays)
-            places.append(numpy.ascontiguousarray(hits.point[found]))
-            # On behind what was hit, which is left out besides.
-            t = hits.t[found]
-            t_min = numpy.nextafter(t * (1 + _SAME_PLACE), numpy.inf)
-            source = hits.primitive[found]
-            rounds += 1
-        if not triangles:
-            nothing = numpy.zeros(0, numpy.int64)
-            return nothing, nothing, numpy.zeros((0, 3))
-        return numpy.concatenate(triangles), numpy.concatenate(indices), numpy.concatenate(places)
+        """The triangle, the ray and the place of each hit: first hits, then second ones, and so on."""
+        if most == 1:
+            nearest = self._geometry.closest(ray_origins, ray_directions)
+            rays = numpy.nonzero(nearest.hit)[0]
+            return nearest.primitive[rays].astype(numpy.int64), rays, nearest.point[rays]
+        hits = self._geometry.all_hits(ray_origins, ray_directions)
+        is_same = (hits.ray[1:] == hits.ray[:-1]) & (hits.t[1:] <= hits.t[:-1] * (1 + _SAME_PLACE))
+        told = numpy.nonzero(numpy.concatenate([[True], ~is_same]))[0][: None if len(hits) else 0]
+        # Which of its ray's hits each one is.
+        rays = hits.ray[told]
+        rank = numpy.arange(len(rays)) - numpy.searchsorted(rays, rays)
+        order = numpy.argsort(rank, kind="stable")
+        if most is not None:
+            order = order[rank[order] < most]
+        return (
+            hits.primitive[told[order]].astype(numpy.int64),
+            rays[order],
+            numpy.ascontiguousarray(hits.point[told[order]]),
+        )

@@ -1,0 +1,273 @@
+#include "simd/trace_all.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/trace_all.cc"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "simd/dispatch.h"
+#include "simd/leaf-inl.h"
+#include "simd/packet-inl.h"
+#include "simd/slabs-inl.h"
+#include "simd/trace-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
+
+// One ray of a packet in every lane, so that the tests of a vector of rays take it against a vector
+// of primitives, or against one of them. What they keep is the hit of each lane, to be collected.
+template <typename Real>
+struct alignas(kAlignment) RepeatedRay {
+  static constexpr std::uint32_t kSize = kMaxLeafSize;
+  using D = LeafLanes<Real>;
+
+  Real origins[3][kSize], directions[3][kSize];
+  Real shears[2][kSize], screens[kSize];
+  Real t_min;
+  int axis;
+  std::uint32_t source;
+  // Of the pair that is tested: see TestFrom.
+  std::uint32_t tested_source;
+  // As HitSlots has them.
+  Real t[kSize], u[kSize], v[kSize], det[kSize];
+  std::uint32_t id[kSize];
+
+  HWY_INLINE RepeatedRay(const Packet<Real>& packet, std::uint32_t lane)
+      : t_min(packet.t_min[lane]),
+        axis(static_cast<int>(packet.axis[lane])),
+        source(packet.source[lane]) {
+    const D d;
+    const auto repeat = [&](Real value, Real(&to)[kSize]) SHEAF_LAMBDA {
+      for (std::uint32_t i = 0; i < kSize; i += LaneCount(d)) {
+        hn::StoreU(hn::Set(d, value), d, to + i);
+      }
+    };
+    for (int k = 0; k < 3; ++k) {
+      repeat(packet.origin[k][lane], origins[k]);
+      repeat(packet.direction[k][lane], directions[k]);
+    }
+    repeat(packet.shear_x[lane], shears[0]);
+    repeat(packet.shear_y[lane], shears[1]);
+    repeat(packet.screen[lane], screens);
+  }
+
+  // Forgets what is kept; hits up to `last` are wanted. Pairs go by the id 0, whatever primitive is
+  // tested; a `from` of kInsideBit asks for the far root of a sphere alone.
+  HWY_INLINE void TestFrom(std::uint32_t from, Real last) {
+    const D d;
+    tested_source = from;
+    hn::StoreU(hn::Set(d, last), d, t);
+    StoreIds(d, hn::Set(IdLanes<D>(), kNoPrimitive), id);
+  }
+
+  HWY_INLINE const Real* origin(int k) const { return origins[k]; }
+  HWY_INLINE const Real* direction(int k) const { return directions[k]; }
+  HWY_INLINE const Real* shear_x() const { return shears[0]; }
+  HWY_INLINE const Real* shear_y() const { return shears[1]; }
+  HWY_INLINE const Real* screen() const { return screens; }
+  HWY_INLINE HitSlots<Real> slots() const {
+    auto& self = const_cast<RepeatedRay&>(*this);
+    return {self.t, self.u, self.v, self.det, self.id};
+  }
+  template <class DT>
+  HWY_INLINE hn::Vec<DT> TMin(DT d) const {
+    return hn::Set(d, t_min);
+  }
+  template <class DT>
+  HWY_INLINE hn::Vec<IdLanes<DT>> Sources(DT /*d*/) const {
+    return hn::Set(IdLanes<DT>(), hn::TFromD<IdLanes<DT>>{tested_source});
+  }
+};
+
+// Neither a pair's id nor a far root's.
+inline constexpr std::uint32_t kFromElsewhere = kNoPrimitive;
+
+template <typename Real>
+HWY_NOINLINE void CollectTriangles(const TreeView<Real>& tree, std::uint32_t leaf,
+                                   RepeatedRay<Real>& ray, HitList<Real>& list) {
+  const LeafLanes<Real> d;
+  using V = hn::Vec<LeafLanes<Real>>;
+  const std::uint32_t n = LeafCount(leaf);
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const Real* block = BlockOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const int kx = (ray.axis + 1) % 3, ky = (ray.axis + 2) % 3;
+  for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
+    const auto relative = [&](int vertex, int k) SHEAF_LAMBDA -> V {
+      return hn::Sub(hn::LoadU(d, block + (3 * vertex + k) * n + i), hn::Load(d, ray.origin(k)));
+    };
+    ray.TestFrom(kFromElsewhere, list.last());
+    const auto hit = TriangleAgainstRays<Query::kClosest>(
+        d, ray, ray.axis, relative(0, kx), relative(0, ky), relative(0, ray.axis), relative(1, kx),
+        relative(1, ky), relative(1, ray.axis), relative(2, kx), relative(2, ky),
+        relative(2, ray.axis), BlockColumns<Real>{block + i, n, 1}, 0, LanesBelow(d, i, n));
+    for (std::uint32_t bits = MaskBits(d, hit); bits != 0; bits &= bits - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (ids[i + k] == (ray.source & ~kInsideBit)) continue;
+      list.Add({ray.t[k], ids[i + k], ray.u[k] / ray.det[k], ray.v[k] / ray.det[k]});
+    }
+  }
+}
+
+// The hit of primitive `k` of a leaf that the screen let pass, if there is one.
+template <class Test, typename Real>
+HWY_INLINE bool TestOne(const TreeView<Real>& tree, std::uint32_t leaf, std::uint32_t k,
+                        std::uint32_t from, Real last, RepeatedRay<Real>& ray) {
+  const LeafLanes<Real> d;
+  ray.TestFrom(from, last);
+  return !hn::AllFalse(
+      d, ScreenedAgainstRays<Query::kClosest, Test>(d, ray, BlockOf<Test::kKind>(tree, leaf),
+                                                    LeafCount(leaf), k, 0, LanesBelow(d, 0, 1)));
+}
+
+template <class Test, typename Real>
+HWY_NOINLINE void CollectScreened(const TreeView<Real>& tree, std::uint32_t leaf,
+                                  RepeatedRay<Real>& ray, HitList<Real>& list) {
+  const LeafLanes<Real> d;
+  const std::uint32_t n = LeafCount(leaf);
+  const Real* block = BlockOf<Test::kKind>(tree, leaf);
+  const std::uint32_t* ids = IdsOf<Test::kKind>(tree, leaf);
+  for (std::uint32_t i = 0; i < n; i += LaneCount(d)) {
+    const auto relative = [&](int k) SHEAF_LAMBDA {
+      return hn::Sub(hn::Load(d, ray.origin(k)), hn::LoadU(d, block + k * n + i));
+    };
+    const auto met = MayHitSphere(
+        d, relative(0), relative(1), relative(2), hn::Load(d, ray.direction(0)),
+        hn::Load(d, ray.direction(1)), hn::Load(d, ray.direction(2)), hn::Load(d, ray.screen()),
+        hn::LoadU(d, block + 3 * n + i), hn::Set(d, ray.t_min), hn::Set(d, list.last()));
+    for (std::uint32_t bits = MaskBits(d, hn::And(met, LanesBelow(d, i, n))); bits != 0;
+         bits &= bits - 1) {
+      const std::uint32_t k = i + static_cast<std::uint32_t>(std::countr_zero(bits));
+      const bool is_source = (ray.source & ~kInsideBit) == ids[k];
+      const bool is_sphere = Test::kKind == PrimitiveKind::kSphere;
+      const bool is_inside = is_sphere && is_source && ray.source != ids[k];
+      if (is_source && !is_inside) continue;
+      const std::uint32_t from = is_inside ? kInsideBit : kFromElsewhere;
+      if (!TestOne<Test>(tree, leaf, k, from, list.last(), ray)) continue;
+      const bool enters = is_sphere && ray.u[0] == 0;
+      list.Add({ray.t[0], ids[k], ray.u[0], ray.v[0]});
+      // A sphere that is entered is left as well.
+      if (enters && TestOne<Test>(tree, leaf, k, kInsideBit, list.last(), ray)) {
+        list.Add({ray.t[0], ids[k], ray.u[0], ray.v[0]});
+      }
+    }
+  }
+}
+
+template <typename Real>
+HWY_INLINE void CollectLeaf(const TreeView<Real>& tree, std::uint32_t leaf, RepeatedRay<Real>& ray,
+                            HitList<Real>& list) {
+  switch (LeafKind(leaf)) {
+    case PrimitiveKind::kTriangle:
+      return CollectTriangles(tree, leaf, ray, list);
+    case PrimitiveKind::kSphere:
+      return CollectScreened<SphereTest>(tree, leaf, ray, list);
+    case PrimitiveKind::kDisk:
+      return CollectScreened<DiskTest>(tree, leaf, ray, list);
+  }
+}
+
+// Every leaf that the ray of `lane` meets before the list ends, the nearest children first. Box
+// tests by `Slabs` must hold for the ray.
+template <class Slabs, typename Real>
+HWY_NOINLINE void CollectAlong(const TreeView<Real>& tree, const Packet<Real>& packet,
+                               std::uint32_t lane, RepeatedRay<Real>& ray, HitList<Real>& list) {
+  using Distance = typename Slabs::Distance;
+  const Slabs slabs(tree, packet, lane);
+  Distance stack_enter[kTreeStackSize];
+  std::uint32_t stack_child[kTreeStackSize];
+  std::uint32_t size = 0, child = 0;
+  Distance last = Slabs::LastOf(list.last());
+  for (;;) {
+    if (IsLeaf(child)) {
+      CollectLeaf(tree, child, ray, list);
+      if (list.is_done()) return;
+      last = Slabs::LastOf(list.last());
+    } else {
+      const TreeNode& node = tree.nodes[child];
+      alignas(kAlignment) Distance enters[kTreeWidth];
+      std::uint32_t met = 0;
+      for (std::uint32_t i = 0; i < kTreeWidth; i += LaneCount(typename Slabs::D())) {
+        met |= slabs.Meet(node, i, last, enters) << i;
+      }
+      for (const std::uint32_t base = size; met != 0; met &= met - 1) {
+        const int i = std::countr_zero(met);
+        std::uint32_t at = size++;
+        for (; at != base && stack_enter[at - 1] < enters[i]; --at) {
+          stack_enter[at] = stack_enter[at - 1];
+          stack_child[at] = stack_child[at - 1];
+        }
+        stack_enter[at] = enters[i];
+        stack_child[at] = node.child[i];
+      }
+    }
+    do {
+      if (size == 0) return;
+      --size;
+    } while (stack_enter[size] > last);
+    child = stack_child[size];
+  }
+}
+
+template <typename Real>
+HWY_NOINLINE void CollectEveryLeaf(const TreeView<Real>& tree, RepeatedRay<Real>& ray,
+                                   HitList<Real>& list) {
+  for (std::uint32_t i = 0; i < tree.node_count; ++i) {
+    for (const std::uint32_t child : tree.nodes[i].child) {
+      if (IsLeaf(child) && child != kNoChild) CollectLeaf(tree, child, ray, list);
+      if (list.is_done()) return;
+    }
+  }
+}
+
+template <typename Real>
+HWY_INLINE void CollectLane(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lane,
+                            std::uint32_t fit_wide, const ListedHit<Real>* after,
+                            HitList<Real>& list) {
+  RepeatedRay<Real> ray(packet, lane);
+  // Boxes that are left before what the list begins after hold nothing that counts. The tests of
+  // primitives keep the ray's own interval.
+  if (after && after->t > packet.t_min[lane]) packet.t_min[lane] = after->t;
+  if ((packet.without_boxes >> lane & 1) == 0) {
+    CollectAlong<LaneSlabs<Real>>(tree, packet, lane, ray, list);
+  } else if ((fit_wide >> lane & 1) != 0) {
+    CollectAlong<WideSlabs<Real>>(tree, packet, lane, ray, list);
+  } else {
+    CollectEveryLeaf(tree, ray, list);
+  }
+}
+
+template <typename Real>
+void TraceAllLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
+                   const RayIntervals<Real>& intervals, std::uint32_t count,
+                   const HitRuleView& rules, const HitListOutput<Real>& lists) {
+  Packet<Real> packet;
+  const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  for (std::uint32_t begin = 0; begin < count; begin += lanes) {
+    LoadPacket(rays, intervals, begin, count, packet);
+    PrepareLeafTerms(tree, packet);
+    if (!HasScreened(tree)) hn::Store(hn::Zero(Lanes<Real>()), Lanes<Real>(), packet.screen);
+    PrepareBoxes(tree, packet);
+    const std::uint32_t open = tree.node_count == 0 ? 0 : OpenLanes(packet);
+    const std::uint32_t fit_wide = FitWideBoxes(packet, packet.without_boxes);
+    for (std::uint32_t lane = 0; lane < std::min(lanes, count - begin); ++lane) {
+      const std::uint32_t i = begin + lane;
+      HitList<Real> list(lists, rules, i, packet.t_best[lane]);
+      const ListedHit<Real>* after = lists.after ? lists.after + i : nullptr;
+      const bool is_over = after && after->t > packet.t_best[lane];
+      if ((open >> lane & 1) != 0 && !is_over && (lists.capacity > 0 || lists.total)) {
+        CollectLane(tree, packet, lane, fit_wide, after, list);
+      }
+      list.Finish();
+    }
+  }
+}
+
+SHEAF_NAME_KERNELS(TraceAll);
+
+}  // namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sheaf::SHEAF_SIMD {
+SHEAF_EXPORT(TraceAll);
+}  // namespace sheaf::SHEAF_SIMD
+#endif  // HWY_ONCE
