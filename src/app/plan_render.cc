@@ -88,6 +88,14 @@ Result<OpenedScene> OpenFirst(const RenderRequest& request, ProgressStyle style)
                            request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
 }
 
+// What follows from other options.
+void FillIn(RenderRequest* request) {
+  if (!request->no_floor) request->options.floor = Floor::kUnderLoneModels;
+  if (request->size) {
+    request->options.aspect = static_cast<double>(request->size->width) / request->size->height;
+  }
+}
+
 }  // namespace
 
 Result<RenderPlan> PlanRender(const RenderRequest& given) {
@@ -97,10 +105,7 @@ Result<RenderPlan> PlanRender(const RenderRequest& given) {
   if (request.output == "-") request.output = kStandardOutputPath;
   // Whatever can be refused is refused before the work.
   if (const Status sound = CheckCommandLine(request); !sound) return sound.error();
-  if (!request.no_floor) request.options.floor = Floor::kUnderLoneModels;
-  if (request.size) {
-    request.options.aspect = static_cast<double>(request.size->width) / request.size->height;
-  }
+  FillIn(&request);
   plan.style = ChooseProgressStyle(request);
   Result<OpenedScene> opened = OpenFirst(request, plan.style);
   if (!opened) return opened.error();
@@ -119,6 +124,24 @@ Result<RenderPlan> PlanRender(const RenderRequest& given) {
   for (const std::string& doubt : doubts) {
     if (!request.quiet) PrintMessage("sheaf: warning: " + doubt);
   }
+  return plan;
+}
+
+Result<RenderPlan> PlanFollowing(const RenderRequest& given) {
+  RenderPlan plan;
+  plan.request = given;
+  RenderRequest& request = plan.request;
+  FillIn(&request);
+  // What rank 0 refused to read is not among what it has sent.
+  request.options.allow_outside = true;
+  request.options.strict = false;
+  request.quiet = true;
+  Result<OpenedScene> opened = OpenFirst(request, ProgressStyle::kNone);
+  if (!opened) return opened.error();
+  plan.opened = std::move(opened).value();
+  Result<RenderOptions> options = MergeOptions(request, plan.opened.scene.settings);
+  if (!options) return options.error();
+  plan.options = std::move(options).value();
   return plan;
 }
 

@@ -25,6 +25,10 @@ struct RenderPlan {
 // speaks against the work.
 Result<RenderPlan> PlanRender(const RenderRequest& given);
 
+// The same for a process that renders areas of another's pictures: no frames, and no warnings,
+// which that one gives.
+Result<RenderPlan> PlanFollowing(const RenderRequest& given);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_APP_PLAN_RENDER_H_

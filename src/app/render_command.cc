@@ -7,8 +7,10 @@
 
 #include "sheaf/scene.h"
 #include "src/app/band_journal.h"
+#include "src/app/follow_render.h"
 #include "src/app/frame_writer.h"
 #include "src/app/interrupt.h"
+#include "src/app/join_ranks.h"
 #include "src/app/output_path.h"
 #include "src/app/plan_frames.h"
 #include "src/app/plan_render.h"
@@ -20,7 +22,10 @@
 #include "src/app/sequence_journal.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
+#include "src/cluster/leader.h"
+#include "src/cluster/share_files.h"
 #include "src/core/atomic_file.h"
+#include "src/formats/held_files.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -72,7 +77,8 @@ Result<Earlier> FindEarlier(const RenderRequest& request, const RenderOptions& o
 // Renders the frames in turn. Each picture is written when it is ready.
 Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
                                               const RenderOptions& options, ProgressStyle style,
-                                              std::vector<Frame> frames, OpenedScene* opened) {
+                                              std::vector<Frame> frames, OpenedScene* opened,
+                                              Leader* leader) {
   Result<Earlier> found = FindEarlier(request, options, opened->files, frames.size());
   if (!found) return found.error();
   std::optional<SequenceJournal>& journal = found.value().sequence;
@@ -95,8 +101,9 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
       posed = frame.number;
     }
     frame.camera = &opened->scene.cameras[frame.camera_index];
-    Result<FrameRecord> record = RenderPicture(request, opened->scene, frame, options, style,
-                                               LabelOf(frame, pace), found.value().identity);
+    Result<FrameRecord> record =
+        RenderPicture(request, opened->scene, frame, options, style, LabelOf(frame, pace),
+                      found.value().identity, leader);
     if (!record) return record.error();
     if (journal) {
       if (const Status added = journal->Add(files); !added) return added.error();
@@ -112,17 +119,40 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
   return records;
 }
 
+// Lets the other ranks read what this one has read.
+void ShareScene(const RenderRequest& request, Ranks& ranks) {
+  ShareWork({request.work, HeldFiles()}, ranks, [] { return PendingSignal() != 0; });
+}
+
 // Renders every camera at every frame; the statistics are written at the end.
-Status RunRender(const RenderRequest& given) {
+Status RunLeading(const RenderRequest& given, Ranks* ranks) {
+  // Whatever fails from here on, the others are told.
+  std::optional<Leader> leader;
+  if (ranks != nullptr) {
+    leader.emplace(*ranks);
+    HoldFiles();
+  }
   Result<RenderPlan> planned = PlanRender(given);
   if (!planned) return planned.error();
   RenderPlan& plan = planned.value();
   CatchInterrupts();
-  const auto records =
-      RenderFrames(plan.request, plan.options, plan.style, plan.frames, &plan.opened);
+  if (ranks != nullptr) ShareScene(plan.request, *ranks);
+  const auto records = RenderFrames(plan.request, plan.options, plan.style, plan.frames,
+                                    &plan.opened, leader ? &*leader : nullptr);
   if (!records) return records.error();
   return WriteStatistics(plan.request.statistics,
                          StatisticsJson(plan.request.scene, records.value()));
+}
+
+Result<ExitCode> RunRender(const RenderRequest& request) {
+  const Result<Ranks*> ranks = FindRanks();
+  if (!ranks) return ranks.error();
+  if (ranks.value() != nullptr && ranks.value()->rank() > 0) {
+    return FollowRender(request, *ranks.value());
+  }
+  const Status rendered = RunLeading(request, ranks.value());
+  if (!rendered) return rendered.error();
+  return ExitCode::kOk;
 }
 
 }  // namespace
