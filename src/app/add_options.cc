@@ -41,6 +41,11 @@ void AddName(CLI::App& app, const char* name, std::string& value, const char* pl
   app.add_option(name, value, description)->option_text(placeholder);
 }
 
+void AddWords(CLI::App& app, const char* name, std::vector<std::string>& values,
+              const char* placeholder, const char* description) {
+  app.add_option(name, values, description)->option_text(placeholder)->allow_extra_args(false);
+}
+
 void AddChoice(CLI::App& app, const char* name, std::string& value,
                const std::vector<std::string>& choices, const char* description) {
   app.add_option(name, value, description)
@@ -161,6 +166,18 @@ std::string GivenText(const CLI::App& app, const std::set<std::string>& except) 
     text += '\n';
   }
   return text;
+}
+
+std::vector<std::string> GivenWords(const CLI::App& app, const std::set<std::string>& except) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || except.contains(option->get_name())) continue;
+    for (const std::string& value : option->results()) {
+      const bool is_bare = option->get_items_expected_max() == 0 && value == "true";
+      words.push_back(is_bare ? option->get_name() : option->get_name() + "=" + value);
+    }
+  }
+  return words;
 }
 
 std::vector<std::string> GivenOptions(const CLI::App& app) {

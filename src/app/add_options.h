@@ -46,6 +46,10 @@ void AddInputs(CLI::App& app, const char* name, std::vector<std::string>& values
 void AddName(CLI::App& app, const char* name, std::string& value, const char* placeholder,
              const char* description);
 
+// The same, once or more.
+void AddWords(CLI::App& app, const char* name, std::vector<std::string>& values,
+              const char* placeholder, const char* description);
+
 // One of `choices`.
 void AddChoice(CLI::App& app, const char* name, std::string& value,
                const std::vector<std::string>& choices, const char* description);
@@ -106,6 +110,10 @@ void AddFooter(CLI::App& app, const std::string& text);
 // The options and inputs that the parsed command line has, with their values, but for those that
 // are named: a text that differs where the work does.
 std::string GivenText(const CLI::App& app, const std::set<std::string>& except);
+
+// The options of the parsed command line, but for those that are named, as words of another one:
+// "--name=value".
+std::vector<std::string> GivenWords(const CLI::App& app, const std::set<std::string>& except);
 
 // The options and inputs that the parsed command line has, by the names given above.
 std::vector<std::string> GivenOptions(const CLI::App& app);

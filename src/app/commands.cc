@@ -12,6 +12,7 @@
 #include "src/app/pareto_command.h"
 #include "src/app/render_command.h"
 #include "src/app/stress_command.h"
+#include "src/app/submit_command.h"
 #include "src/app/view_command.h"
 
 namespace sheaf {
@@ -29,6 +30,10 @@ constexpr CommandEntry kCommands[] = {
      &ViewCommand},
     {"merge", "Join what --tile I/N or --crop rendered into the whole picture",
      "  sheaf merge part1.png part2.png ... -o whole.png\n", &MergeCommand},
+    {"submit", "Render on many machines: jobs for Slurm, or a list of commands",
+     "  sheaf submit scene.json -o picture.exr --parts 64 --sbatch=--time=2:00:00 --run\n"
+     "  sheaf submit scene.json -o picture.png --parts 8 --list | parallel\n",
+     &SubmitCommand},
     {"convert", "Turn a scene or model into scene JSON, or a picture into another format",
      "  sheaf convert scene.nff -o scene.json\n", &ConvertCommand},
     {"denoise", "Filter the noise out of a picture, guided by its layers",

@@ -2,17 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "sheaf/scene.h"
 #include "src/app/band_journal.h"
-#include "src/app/choose.h"
+#include "src/app/follow_render.h"
 #include "src/app/frame_writer.h"
 #include "src/app/interrupt.h"
+#include "src/app/join_ranks.h"
 #include "src/app/output_path.h"
 #include "src/app/plan_frames.h"
+#include "src/app/plan_render.h"
 #include "src/app/print_message.h"
 #include "src/app/progress.h"
 #include "src/app/render_picture.h"
@@ -21,66 +22,14 @@
 #include "src/app/sequence_journal.h"
 #include "src/app/standard_output.h"
 #include "src/app/statistics_json.h"
-#include "src/app/suspect_scene.h"
+#include "src/cluster/leader.h"
+#include "src/cluster/share_files.h"
 #include "src/core/atomic_file.h"
+#include "src/formats/held_files.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
 namespace {
-
-// Of --error without --spp.
-constexpr int kMostForError = 1024;
-
-Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings& settings) {
-  RenderOptions options = FrameOptions(settings, request.size, request.samples);
-  options.max_depth = request.max_depth.value_or(settings.max_depth);
-  options.contrast = request.contrast;
-  options.error = request.error;
-  // The scene's samples may be those of a picture without such a goal.
-  if (request.error && !request.samples) options.samples = std::max(options.samples, kMostForError);
-  if (request.error && request.contrast) return Usage("--error: not together with --adaptive");
-  if (!request.samples && !request.contrast && !request.error) {
-    options.contrast = settings.contrast;
-    options.error = settings.error;
-  }
-  options.min_throughput = request.min_throughput.value_or(0);
-  options.integrator = settings.integrator;
-  for (const Integrator integrator : kIntegrators) {
-    if (request.integrator == IntegratorName(integrator)) options.integrator = integrator;
-  }
-  options.crop = request.crop;
-  if (const Status chosen = ChooseTarget(request.target, options); !chosen) return chosen.error();
-  options.precision = PrecisionOf(request.precision);
-  if (options.precision == Precision::kFast && options.target.is_scalar()) {
-    return Usage("--precision fast: needs a SIMD target, not --target scalar");
-  }
-  options.threads = request.threads.value_or(options.threads);
-  options.tile_size = request.tile_size.value_or(options.tile_size);
-  options.layers = request.layers;
-  if (request.part) {
-    const auto [part, parts] = *request.part;
-    if (parts > options.height) {
-      return Usage(
-          fmt::format("--tile {}/{}: the picture has {} rows", part, parts, options.height));
-    }
-    // Rows as even as can be, whatever the number of parts.
-    const auto row = [rows = std::int64_t{options.height}, count = parts](int i) {
-      return static_cast<int>(rows * i / count);
-    };
-    options.crop = PixelRect{0, row(part - 1), options.width, row(part)};
-  }
-  options.timing = request.statistics.empty() ? Timing::kOff : Timing::kOn;
-  if (options.crop && (options.crop->x1 > options.width || options.crop->y1 > options.height)) {
-    return Usage(fmt::format("--crop: {},{},{},{} is not inside the picture of {}x{}",
-                             options.crop->x0, options.crop->y0, options.crop->x1, options.crop->y1,
-                             options.width, options.height));
-  }
-  return options;
-}
-
-ProgressStyle ChooseProgressStyle(const RenderRequest& request) {
-  return ProgressStyleNamed(request.quiet ? "none" : request.progress);
-}
 
 Status WriteStatistics(const std::string& destination, const std::string& json) {
   if (destination.empty()) return Done{};
@@ -94,25 +43,6 @@ std::string LabelOf(const Frame& frame, const SequencePace& pace) {
   const std::string text = pace.Text();
   if (!text.empty()) label += (frame.number ? ", " : " ") + text;
   return label;
-}
-
-// What makes a sequence of more than one frame all one picture; empty where something moves.
-std::string StillSequence(const RenderRequest& request, const OpenedScene& opened,
-                          const std::vector<Frame>& frames) {
-  const std::optional<FrameRange> range = SequenceOf(request);
-  if (!range || range->count() == 1 || request.turntable || opened.duration > 0) return "";
-  const bool moves = std::any_of(frames.begin(), frames.end(), [&](const Frame& frame) {
-    return opened.cameras[frame.camera_index].path.size() > 1;
-  });
-  return moves ? "" : "--frames: nothing moves, so that all frames show the same";
-}
-
-Result<OpenedScene> OpenFirst(const RenderRequest& request, ProgressStyle style) {
-  const ReadingNotice notice(style, request.scene);
-  const std::optional<FrameRange> sequence = SequenceOf(request);
-  const SceneOptions options = sequence ? OptionsAt(request, sequence->first) : request.options;
-  return OpenSceneAndFiles(request.scene, options,
-                           request.quiet ? Verbosity::kErrorsOnly : Verbosity::kWarnings);
 }
 
 std::vector<std::string> FilesOf(const Frame& frame) {
@@ -147,7 +77,8 @@ Result<Earlier> FindEarlier(const RenderRequest& request, const RenderOptions& o
 // Renders the frames in turn. Each picture is written when it is ready.
 Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
                                               const RenderOptions& options, ProgressStyle style,
-                                              std::vector<Frame> frames, OpenedScene* opened) {
+                                              std::vector<Frame> frames, OpenedScene* opened,
+                                              Leader* leader) {
   Result<Earlier> found = FindEarlier(request, options, opened->files, frames.size());
   if (!found) return found.error();
   std::optional<SequenceJournal>& journal = found.value().sequence;
@@ -170,8 +101,9 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
       posed = frame.number;
     }
     frame.camera = &opened->scene.cameras[frame.camera_index];
-    Result<FrameRecord> record = RenderPicture(request, opened->scene, frame, options, style,
-                                               LabelOf(frame, pace), found.value().identity);
+    Result<FrameRecord> record =
+        RenderPicture(request, opened->scene, frame, options, style, LabelOf(frame, pace),
+                      found.value().identity, leader);
     if (!record) return record.error();
     if (journal) {
       if (const Status added = journal->Add(files); !added) return added.error();
@@ -187,37 +119,40 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
   return records;
 }
 
-// Renders every camera at every frame; the statistics are written at the end.
-Status RunRender(const RenderRequest& given) {
-  RenderRequest request = given;
-  if (request.output == "-") request.output = kStandardOutputPath;
-  // Whatever can be refused is refused before the work.
-  if (const Status sound = CheckCommandLine(request); !sound) return sound;
-  if (!request.no_floor) request.options.floor = Floor::kUnderLoneModels;
-  if (request.size) {
-    request.options.aspect = static_cast<double>(request.size->width) / request.size->height;
-  }
-  const ProgressStyle style = ChooseProgressStyle(request);
-  Result<OpenedScene> opened = OpenFirst(request, style);
-  if (!opened) return opened.error();
-  std::vector<std::string> doubts = SuspectScene(opened.value().scene);
-  for (std::string& doubt : doubts) doubt = fmt::format("{}: {}", request.scene, doubt);
-  const Result<RenderOptions> options = MergeOptions(request, opened.value().scene.settings);
-  if (!options) return options.error();
-  const Result<std::vector<Frame>> frames =
-      PlanFrames(request, opened.value().scene, opened.value().files);
-  if (!frames) return frames.error();
-  const std::string still = StillSequence(request, opened.value(), frames.value());
-  if (!still.empty()) doubts.push_back(still);
-  for (const std::string& doubt : doubts) {
-    if (!request.quiet) PrintMessage("sheaf: warning: " + doubt);
-  }
+// Lets the other ranks read what this one has read.
+void ShareScene(const RenderRequest& request, Ranks& ranks) {
+  ShareWork({request.work, HeldFiles()}, ranks, [] { return PendingSignal() != 0; });
+}
 
+// Renders every camera at every frame; the statistics are written at the end.
+Status RunLeading(const RenderRequest& given, Ranks* ranks) {
+  // Whatever fails from here on, the others are told.
+  std::optional<Leader> leader;
+  if (ranks != nullptr) {
+    leader.emplace(*ranks);
+    HoldFiles();
+  }
+  Result<RenderPlan> planned = PlanRender(given);
+  if (!planned) return planned.error();
+  RenderPlan& plan = planned.value();
   CatchInterrupts();
-  const auto records =
-      RenderFrames(request, options.value(), style, frames.value(), &opened.value());
+  if (ranks != nullptr) ShareScene(plan.request, *ranks);
+  const auto records = RenderFrames(plan.request, plan.options, plan.style, plan.frames,
+                                    &plan.opened, leader ? &*leader : nullptr);
   if (!records) return records.error();
-  return WriteStatistics(request.statistics, StatisticsJson(request.scene, records.value()));
+  return WriteStatistics(plan.request.statistics,
+                         StatisticsJson(plan.request.scene, records.value()));
+}
+
+Result<ExitCode> RunRender(const RenderRequest& request) {
+  const Result<Ranks*> ranks = FindRanks();
+  if (!ranks) return ranks.error();
+  if (ranks.value() != nullptr && ranks.value()->rank() > 0) {
+    return FollowRender(request, *ranks.value());
+  }
+  const Status rendered = RunLeading(request, ranks.value());
+  if (!rendered) return rendered.error();
+  return ExitCode::kOk;
 }
 
 }  // namespace

@@ -61,6 +61,23 @@ Result<int> Restore(const PixelRect& area, Layers layers, const RowSink& write,
   return rows;
 }
 
+// Renders alone without a leader.
+Status RenderOnRanks(const Scene& scene, const Frame& frame, const RenderOptions& options,
+                     const RowSink& sink, Leader* leader, FrameRecord* record,
+                     RenderProgress* progress) {
+  if (leader == nullptr) {
+    return RenderRows(scene, *frame.camera, options, sink, &record->stats, progress);
+  }
+  const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
+  if (!checked) return checked.error();
+  const FrameOrder order{static_cast<int>(frame.camera_index), frame.number.has_value(),
+                         frame.number.value_or(0), options.layers};
+  const Status rendered = leader->RenderRows(scene, *frame.camera, order, checked.value(), sink,
+                                             &record->stats, progress);
+  record->ranks = leader->records();
+  return rendered;
+}
+
 }  // namespace
 
 void WarnOfOtherWork(const RenderRequest& request, const std::string& journal) {
@@ -71,7 +88,8 @@ void WarnOfOtherWork(const RenderRequest& request, const std::string& journal) {
 
 Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
                                   const RenderOptions& options, ProgressStyle style,
-                                  const std::string& label, std::optional<std::uint64_t> identity) {
+                                  const std::string& label, std::optional<std::uint64_t> identity,
+                                  Leader* leader) {
   FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
   if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
     const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
@@ -118,8 +136,8 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     RenderOptions rest = work;
     if (record.resumed_rows > 0) rest.crop = area;
     const Status rendered =
-        RenderRows(scene, *frame.camera, rest, journal.value() ? keep_and_write : write,
-                   &record.stats, watch.progress());
+        RenderOnRanks(scene, frame, rest, journal.value() ? keep_and_write : write, leader, &record,
+                      watch.progress());
     // A signal in the last tenth of a second may find the frame finished. The command stops even
     // so.
     if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {

@@ -13,14 +13,17 @@
 #include "src/app/progress.h"
 #include "src/app/render_request.h"
 #include "src/app/statistics_json.h"
+#include "src/cluster/leader.h"
 
 namespace sheaf {
 
-// With an identity of the run, finished bands go to a journal beside the picture, and those that
-// an earlier run left there are taken from it. The journal stays: RemoveJournal.
+// With a leader all of its ranks render, else this process alone. With an identity of the run,
+// finished bands go to a journal beside the picture, and those that an earlier run left there are
+// taken from it. The journal stays: RemoveJournal.
 Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
                                   const RenderOptions& options, ProgressStyle style,
-                                  const std::string& label, std::optional<std::uint64_t> identity);
+                                  const std::string& label, std::optional<std::uint64_t> identity,
+                                  Leader* leader);
 
 // Says, unless the run is quiet, that this journal is of other work and is not gone on with.
 void WarnOfOtherWork(const RenderRequest& request, const std::string& journal);

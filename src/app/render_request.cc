@@ -96,6 +96,8 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
   app.parse_complete_callback([&app, &request] {
     request.identity =
         GivenText(app, {"--frames", "--resume", "--threads", "--progress", "--quiet", "--json"});
+    request.work = GivenText(
+        app, {"--resume", "--threads", "--progress", "--quiet", "--json", "--target", "--output"});
   });
 }
 

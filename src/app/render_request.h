@@ -51,6 +51,7 @@ struct RenderRequest {
   std::string denoise;  // the filter; empty: none
   bool resume = false;
   std::string identity;  // the options that a picture's bits depend on, as text
+  std::string work;      // the same, of all that ranks must have in common
   std::string progress = "auto";
   bool quiet = false, no_floor = false;
   std::string statistics;  // empty: none; "-": stdout; else a file

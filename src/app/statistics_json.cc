@@ -36,6 +36,23 @@ Json LaneUseJson(const RenderStats& stats) {
   return phases;
 }
 
+Json RanksJson(const std::vector<RankRecord>& ranks) {
+  Json json = Json::array();
+  for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
+    const RankRecord& record = ranks[rank];
+    json.push_back(
+        {{"rank", rank},
+         {"host", record.info.host},
+         {"target", record.info.target},
+         {"threads", record.info.threads},
+         {"rays", record.stats.rays.traced()},
+         {"seconds",
+          {{"wall", record.stats.wall_seconds}, {"compile", record.stats.compile_seconds}}},
+         {"idle", record.idle}});
+  }
+  return json;
+}
+
 Json FrameJson(const FrameRecord& frame) {
   const RenderOptions& options = frame.options;
   const RenderStats& stats = frame.stats;
@@ -75,6 +92,7 @@ Json FrameJson(const FrameRecord& frame) {
   if (frame.frame) json["frame"] = *frame.frame;
   if (frame.resumed_rows > 0) json["resumed_rows"] = frame.resumed_rows;
   if (!options.target.is_scalar()) json["lane_use"] = LaneUseJson(stats);
+  if (!frame.ranks.empty()) json["ranks"] = RanksJson(frame.ranks);
   if (options.integrator) json["integrator"] = IntegratorName(*options.integrator);
   if (options.error) json["error"] = *options.error;
   if (options.contrast) json["adaptive"] = *options.contrast;

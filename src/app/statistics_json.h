@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sheaf/render.h"
+#include "src/cluster/leader.h"
 
 namespace sheaf {
 
@@ -16,9 +17,10 @@ struct FrameRecord {
   std::optional<int> frame;  // of a sequence
   std::string picture;       // its path
   RenderOptions options;
-  RenderStats stats;     // of what this run rendered
-  int resumed_rows = 0;  // that an earlier run had rendered
-  bool is_kept = false;  // whether an earlier run had finished it
+  RenderStats stats;                   // of what this run rendered
+  int resumed_rows = 0;                // that an earlier run had rendered
+  bool is_kept = false;                // whether an earlier run had finished it
+  std::vector<RankRecord> ranks = {};  // where several processes rendered
 };
 
 // One JSON object, indented, with a newline at its end. Bytes of a name that are not UTF-8 are

@@ -23,6 +23,12 @@ constexpr bool kHasWindow = true;
 constexpr bool kHasWindow = false;
 #endif
 
+#ifdef SHEAF_HAS_MPI
+constexpr bool kHasMpi = true;
+#else
+constexpr bool kHasMpi = false;
+#endif
+
 #ifdef SHEAF_HAS_OIDN
 constexpr bool kHasOidn = true;
 #else
@@ -34,6 +40,7 @@ constexpr OptionalPart kOptionalParts[] = {
     {"OpenImageIO", "reads textures and environments of BMP, TGA, TIFF, WebP, HDR and EXR",
      kHasOpenImageIo},
     {"window", "shows scenes in a window, by GLFW, OpenGL and Dear ImGui", kHasWindow},
+    {"MPI", "renders one picture on many machines, by mpirun", kHasMpi},
     {kOidnPart, "denoises instead of Sheaf's own filter", kHasOidn},
 };
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <system_error>
 
+#include "src/formats/held_files.h"
 #include "src/formats/printable.h"
 
 namespace sheaf {
@@ -40,6 +41,11 @@ Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view w
 }
 
 Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes) {
+  if (const std::string* held = FindHeldFile(path)) {
+    if (held->size() > max_bytes) return InputError(path, "larger than " + SizeText(max_bytes));
+    return *held;
+  }
+  if (AreAllFilesHeld()) return SystemError(path, "cannot open", ENOENT);
   const OpenFile file(std::fopen(path.c_str(), "rb"));
   if (!file) return SystemError(path, "cannot open", errno);
   // The size is only a hint, since pipes have none; the limit holds while reading.
@@ -61,6 +67,7 @@ Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes
     if (count == 0) break;
   }
   if (std::ferror(file.get())) return SystemError(path, "cannot read", errno);
+  HoldFile(path, text);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -108,9 +109,13 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   return frame;
 }
 
+// Renders the compiled frame.
+using MakeWorker = std::function<std::unique_ptr<TileWorker>()>;
+using Schedule = std::function<Status(const RenderOptions& options, const MakeWorker& make_worker)>;
+
 template <typename Real>
 Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& options, Skips skips,
-                const BandSink& sink, RenderStats& stats, RenderProgress& progress) {
+                const Schedule& schedule, RenderStats& stats, RenderProgress& progress) {
   const Clock::time_point start = Clock::now();
   const auto compiled = CompileFrame<Real>(scene, camera, options, skips);
   if (!compiled) return compiled.error();
@@ -130,8 +135,19 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
     }
     return std::make_unique<TileRenderer<Real>>(frame, options, progress.stop);
   };
-  const PixelRect area = AreaOf(options);
-  return RenderBands(area, options, make_worker, sink, stats, progress);
+  return schedule(options, make_worker);
+}
+
+Status RenderScheduled(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                       Skips skips, const Schedule& schedule, RenderStats& stats,
+                       RenderProgress& progress) {
+  const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
+  if (!checked) return checked.error();
+  if (Status sound = Validate(scene); !sound) return sound;
+  if (Status sound = Validate(camera); !sound) return sound;
+  stats = {};
+  const auto render = options.precision == Precision::kDouble ? RenderIn<double> : RenderIn<float>;
+  return render(scene, camera, checked.value(), skips, schedule, stats, progress);
 }
 
 }  // namespace
@@ -139,17 +155,33 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
 Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions& options,
                    Skips skips, const BandSink& sink, RenderStats* stats,
                    RenderProgress* progress) {
-  const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
-  if (!checked) return checked.error();
-  if (Status sound = Validate(scene); !sound) return sound;
-  if (Status sound = Validate(camera); !sound) return sound;
   RenderStats ignored_stats;
   RenderProgress ignored_progress;
   RenderStats& kept_stats = stats ? *stats : ignored_stats;
   RenderProgress& kept_progress = progress ? *progress : ignored_progress;
-  kept_stats = {};
-  const auto render = options.precision == Precision::kDouble ? RenderIn<double> : RenderIn<float>;
-  return render(scene, camera, checked.value(), skips, sink, kept_stats, kept_progress);
+  const Schedule bands = [&](const RenderOptions& checked, const MakeWorker& make_worker) {
+    return RenderBands(AreaOf(checked), checked, make_worker, sink, kept_stats, kept_progress);
+  };
+  return RenderScheduled(scene, camera, options, skips, bands, kept_stats, kept_progress);
+}
+
+Status RenderAreas(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                   const AreaSource& next, const AreaSink& sink, RenderStats* stats,
+                   RenderProgress* progress) {
+  const Schedule areas = [&](RenderOptions checked, const MakeWorker& make_worker) {
+    checked.band_rows = kMaxImageSide;
+    int threads = 0;
+    Status status = Done{};
+    PixelRect area;
+    const BandSink keep = [&](Film& pixels) { return sink(area, pixels); };
+    while (status && next(&area)) {
+      status = RenderBands(area, checked, make_worker, keep, *stats, *progress);
+      threads = std::max(threads, stats->threads);
+    }
+    stats->threads = threads;
+    return status;
+  };
+  return RenderScheduled(scene, camera, options, Skips::kOn, areas, *stats, *progress);
 }
 
 }  // namespace sheaf

@@ -2,6 +2,8 @@
 #ifndef SHEAF_RENDER_RENDER_FRAME_H_
 #define SHEAF_RENDER_RENDER_FRAME_H_
 
+#include <functional>
+
 #include "sheaf/error.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
@@ -16,6 +18,20 @@ enum class Skips { kOn, kOff };
 // null.
 Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions& options,
                    Skips skips, const BandSink& sink, RenderStats* stats, RenderProgress* progress);
+
+// Which pixels of the picture come next; false: none. It may wait.
+using AreaSource = std::function<bool(PixelRect* area)>;
+
+// Takes an area's pixels, and may take the film's contents away.
+using AreaSink = std::function<Status(const PixelRect& area, Film& pixels)>;
+
+// The same for areas that become known one after another: the scene is compiled once, before the
+// first is asked for, and each is rendered with all threads. Where they begin at whole tiles of the
+// picture they have its bits in every arithmetic, else in all but the fast one. Times of `stats`
+// are without what the source and the sink take.
+Status RenderAreas(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                   const AreaSource& next, const AreaSink& sink, RenderStats* stats,
+                   RenderProgress* progress);
 
 }  // namespace sheaf
 

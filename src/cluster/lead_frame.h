@@ -1,0 +1,74 @@
+// One picture as rank 0 leads it.
+#ifndef SHEAF_CLUSTER_LEAD_FRAME_H_
+#define SHEAF_CLUSTER_LEAD_FRAME_H_
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <future>
+#include <optional>
+#include <vector>
+
+#include "sheaf/error.h"
+#include "sheaf/render.h"
+#include "sheaf/scene.h"
+#include "src/cluster/area_plan.h"
+#include "src/cluster/area_worker.h"
+#include "src/cluster/leader.h"
+#include "src/cluster/messages.h"
+#include "src/cluster/ranks.h"
+#include "src/cluster/strips.h"
+
+namespace sheaf {
+
+class FrameLead {
+ public:
+  // `options` are checked. All arguments outlive it.
+  FrameLead(const Scene& scene, const Camera& camera, const RenderOptions& options,
+            const RowSink& sink, Ranks& ranks, RenderProgress& progress);
+  FrameLead(const FrameLead&) = delete;
+  FrameLead& operator=(const FrameLead&) = delete;
+  ~FrameLead();
+
+  Status Run(const FrameOrder& order);
+
+  // Of all ranks together.
+  RenderStats Total() const;
+  const std::vector<RankRecord>& records() const { return records_; }
+
+ private:
+  // Each returns whether something happened.
+  bool TakeMessage();
+  bool TakeOwn();
+  bool HandOut();
+  bool Write();
+
+  void Welcome(int rank, RankInfo info);
+  void Finish(int rank, FinishedArea area);
+  void FinishRank(int rank, RenderStats stats);
+  void Fail(Error error);
+  bool IsDone() const;
+
+  const RenderOptions& options_;
+  const RowSink& sink_;
+  Ranks& ranks_;
+  RenderProgress& progress_;
+  const std::int64_t window_pixels_;
+  AreaPlan plan_;
+  Strips strips_;
+  std::int64_t out_pixels_ = 0;  // handed out and not written
+  std::deque<int> hungry_;       // ranks that can take an area more, each as often as that
+  std::vector<bool> has_ended_;  // by rank: no more areas
+  std::vector<RankRecord> records_;
+  int running_;  // ranks that are not through
+  bool is_own_done_ = false;
+  std::optional<Error> error_;
+  const std::chrono::steady_clock::time_point start_;
+  Film written_;
+  std::future<Status> writing_;
+  AreaWorker own_;  // last: it starts when everything else is there
+};
+
+}  // namespace sheaf
+
+#endif  // SHEAF_CLUSTER_LEAD_FRAME_H_
