@@ -92,10 +92,9 @@ const std::map<std::string, std::set<std::string>>& Below() {
 
 bool MayIncludeSimd(const std::string& layer, const std::string& header) {
   if (EndsWith(header, "-inl.h")) return false;
-  static const std::set<std::string> kPlain = {"simd/streams.h",    "simd/query.h",
-                                               "simd/tree.h",       "simd/shading.h",
-                                               "simd/primitives.h", "simd/instances.h",
-                                               "simd/hit_list.h"};
+  static const std::set<std::string> kPlain = {
+      "simd/streams.h",    "simd/query.h",     "simd/tree.h",    "simd/shading.h",
+      "simd/primitives.h", "simd/instances.h", "simd/hit_list.h"};
   if (layer == "src/sheaf") return false;
   if (kPlain.count(header) || layer == "src/render") return true;
   // The lab measures kernels one by one.
