@@ -29,6 +29,7 @@ struct Request {
   std::uint32_t side = 1000;     // instances along each side of a square
   std::uint32_t frequency = 59;  // of the mesh: 20 times its square triangles
   std::uint32_t picture = 512;
+  float height = 0;  // of the eye; 0: what shows a good part of them
   int repetitions = 5;
   std::string target = "auto", isa = EmbreeIsa();
 };
@@ -57,7 +58,8 @@ std::vector<Place> Forest(std::uint32_t side) {
 // The mesh with the forest's camera.
 BenchScene MeshSeen(const Request& request) {
   BenchScene scene = GeodesicSphere(request.frequency);
-  const float eye[3] = {0, 0.05f * static_cast<float>(request.side) + 2, 3};
+  const float above = 0.05f * static_cast<float>(request.side) + 2;
+  const float eye[3] = {0, request.height > 0 ? request.height : above, 3};
   const float look_at[3] = {0, 0, -0.25f * static_cast<float>(request.side)};
   std::copy_n(eye, 3, scene.eye);
   std::copy_n(look_at, 3, scene.look_at);
@@ -254,6 +256,7 @@ int Main(int argc, char** argv) {
   app.add_option("--frequency", request.frequency, "triangles: 20 times this squared (59)")
       ->check(CLI::Range(1, 500));
   app.add_option("--picture", request.picture, "primary rays a side, a power of two (512)");
+  app.add_option("--height", request.height, "of the eye: low ones see few instances, large ones");
   app.add_option("--repetitions", request.repetitions, "medians of this many runs (5)")
       ->check(CLI::Range(1, 1000));
   app.add_option("--target", request.target, "Sheaf's target (auto)")

@@ -66,6 +66,60 @@ TEST_CASE("a glTF skin stands where its joints do") {
   CHECK_FALSE(Read(gltf).ok());  // one matrix for two joints
 }
 
+// So many triangles that copies of them are dearer than instances.
+json ManyTriangles() {
+  json gltf = OneSquare();
+  std::vector<float> positions;
+  for (int i = 0; i < 3 * 7000; ++i) {
+    positions.insert(positions.end(), {i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f, 0.0f});
+  }
+  Primitive(gltf) = {{"attributes", {{"POSITION", AddFloats(gltf, positions, "VEC3", 3 * 7000)}}}};
+  gltf["meshes"][0]["name"] = "many";
+  return gltf;
+}
+
+TEST_CASE("glTF nodes share a mesh that is large") {
+  json gltf = ManyTriangles();
+  gltf["nodes"] = {{{"mesh", 0}, {"name", "a"}, {"translation", {5, 0, 0}}},
+                   {{"mesh", 0}, {"scale", {2, 3, 4}}},
+                   {{"mesh", 0}, {"rotation", {0, 0, 1, 0}}}};
+  gltf["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  const Scene scene = ReadQuietly(gltf);
+  CHECK(scene.objects.size() == 1);  // the ground of a lone model
+  REQUIRE(scene.groups.size() == 1);
+  CHECK(scene.groups[0].name == "many");
+  CHECK(std::get<Mesh>(scene.groups[0].objects.at(0).shape).triangles.size() == 7000);
+  REQUIRE(scene.instances.size() == 3);
+  CHECK(scene.instances[0].name == "a");
+  CHECK(scene.instances[0].translation == Vec3d(5, 0, 0));
+  CHECK(scene.instances[1].linear[2] == Vec3d(0, 0, 4));
+  CHECK(scene.instances[2].linear[0] == Vec3d(-1, 0, 0));
+  // Two of them are few enough for copies, and what flattens is always one.
+  gltf["scenes"][0]["nodes"] = {0, 1};
+  CHECK(ReadQuietly(gltf).instances.empty());
+  gltf["scenes"][0]["nodes"] = {0, 1, 2};
+  gltf["nodes"][1]["scale"] = {1, 1, 0};
+  CHECK(ReadQuietly(gltf).instances.size() == 2);
+}
+
+TEST_CASE("glTF instances of a node stand where their attributes say") {
+  json gltf = OneSquare();
+  const json attributes = {{"TRANSLATION", AddFloats(gltf, {1, 2, 3, 4, 5, 6}, "VEC3", 2)},
+                           {"ROTATION", AddFloats(gltf, {0, 0, 0, 1, 0, 0, 1, 0}, "VEC4", 2)},
+                           {"SCALE", AddFloats(gltf, {1, 1, 1, 2, 2, 2}, "VEC3", 2)}};
+  gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  gltf["nodes"][0]["translation"] = {10, 0, 0};
+  gltf["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  const Scene scene = ReadQuietly(gltf);
+  CHECK(MeshAt(scene, 0).positions[2] == glm::vec3(12, 3, 3));
+  CHECK(MeshAt(scene, 1).positions[2] == glm::vec3(12, 3, 6));  // half a turn, twice as large
+  json& given = gltf["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  given["SCALE"] = AddFloats(gltf, {1, 1, 1}, "VEC3", 1);
+  CHECK(MessageOf(Read(gltf)).find("SCALE has 1 elements, another 2") != std::string::npos);
+  given = json::object();
+  CHECK(MessageOf(Read(gltf)).find("has no attributes") != std::string::npos);
+}
+
 TEST_CASE("glTF morph targets move by their default weights") {
   json gltf = OneSquare();
   std::vector<float> steps(12, 0);

@@ -29,8 +29,9 @@ Result<Scene> ParseGltf(std::string_view bytes, const std::string& name, SceneFi
   } catch (const std::exception& error) {  // of tinygltf and its JSON library
     return SceneError(name, FirstLine(error.what()));
   }
-  if (scene.objects.empty() && document.left_out()) return *document.left_out();
-  if (scene.objects.empty()) return SceneError(name, "no mesh in its scene");
+  const bool is_empty = scene.objects.empty() && scene.instances.empty();
+  if (is_empty && document.left_out()) return *document.left_out();
+  if (is_empty) return SceneError(name, "no mesh in its scene");
   return scene;
 }
 

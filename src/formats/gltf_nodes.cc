@@ -10,6 +10,7 @@
 
 #include "src/formats/gltf_skins.h"
 #include "src/formats/printable.h"
+#include "src/scene/affine_map.h"
 
 namespace sheaf {
 namespace {
@@ -30,13 +31,7 @@ Transform LocalTransform(const tinygltf::Node& node) {
     return local;
   }
   if (node.rotation.size() == 4) {
-    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2],
-                 w = node.rotation[3];
-    const double length = x * x + y * y + z * z + w * w;
-    const double s = length > 0 ? 2 / length : 0;
-    local.linear = glm::dmat3(1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y),
-                              s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x),
-                              s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y));
+    local.linear = TurnOf(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]);
   }
   if (node.scale.size() == 3) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -72,12 +67,20 @@ bool GltfNodes::Read() {
   for (const int root : roots) {
     if (!Visit(root, Transform{}, 0)) return false;
   }
+  for (const int index : order_) {
+    const tinygltf::Node& node = nodes[static_cast<std::size_t>(index)];
+    if (node.mesh < 0) continue;
+    auto places = ReadPlaces(document_, node, fmt::format("/nodes/{}", index));
+    if (!places) return false;
+    shared_.Count(node, places->size());
+    places_[index] = std::move(*places);
+  }
   // Skins need the transforms of all their joints, wherever these stand.
   for (const int index : order_) {
     const tinygltf::Node& node = nodes[static_cast<std::size_t>(index)];
     const Transform& transform = globals_[static_cast<std::size_t>(index)];
     const std::string place = fmt::format("/nodes/{}", index);
-    if (node.mesh >= 0 && !AddMesh(node, place, transform)) return false;
+    if (node.mesh >= 0 && !AddMesh(index, place, transform)) return false;
     if (node.camera >= 0 && !AddCamera(node, place, transform)) return false;
     if (!AddLight(node, place, transform)) return false;
   }
@@ -131,9 +134,14 @@ bool GltfNodes::Visit(int index, const Transform& parent, int depth) {
 }
 
 // Of a skin's mesh the node's own transform does not count: the joints say where it is.
-bool GltfNodes::AddMesh(const tinygltf::Node& node, const std::string& place,
-                        const Transform& transform) {
-  if (node.skin < 0) return meshes_.Add(node, transform, std::nullopt);
+bool GltfNodes::AddMesh(int index, const std::string& place, const Transform& transform) {
+  const tinygltf::Node& node = document_.model().nodes[static_cast<std::size_t>(index)];
+  if (node.skin < 0) {
+    for (const Transform& within : places_[index]) {
+      if (!AddPlace(node, place, transform * within)) return false;
+    }
+    return true;
+  }
   const auto known = joints_.find(node.skin);
   if (known != joints_.end()) return meshes_.Add(node, transform, known->second);
   auto joints = ReadJoints(document_, node.skin, globals_);
@@ -144,6 +152,28 @@ bool GltfNodes::AddMesh(const tinygltf::Node& node, const std::string& place,
     document_.Warn(place, "a joint is not in the scene, and stands at its origin");
   }
   return meshes_.Add(node, transform, joints_[node.skin] = std::move(joints));
+}
+
+// An instance where that takes less than a copy, and a copy where a transform flattens.
+bool GltfNodes::AddPlace(const tinygltf::Node& node, const std::string& place,
+                         const Transform& transform) {
+  if (!IsInRange(transform)) {
+    return document_.Fail(place, "its transform is not finite, or beyond 1e30");
+  }
+  if (!shared_.IsShared(node) || !FaultOf(MapOf(transform)).empty()) {
+    return meshes_.Add(node, transform, std::nullopt);
+  }
+  const auto [known, is_new] = groups_.try_emplace(node.mesh);
+  if (is_new) {
+    std::vector<Object> others = std::exchange(scene_.objects, {});
+    if (!meshes_.Add(node, Transform{}, std::nullopt)) return false;
+    known->second = static_cast<std::uint32_t>(scene_.groups.size());
+    const auto& mesh = document_.model().meshes[static_cast<std::size_t>(node.mesh)];
+    scene_.groups.push_back({mesh.name, std::exchange(scene_.objects, std::move(others)), {}});
+  }
+  scene_.instances.push_back({node.name, known->second, transform.linear, transform.translation});
+  if (scene_.instances.size() <= kMaxInstances) return true;
+  return document_.Fail(place, fmt::format("more than {} instances", kMaxInstances));
 }
 
 std::string GltfNodes::FreeName(const std::string& wanted) const {

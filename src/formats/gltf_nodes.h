@@ -9,6 +9,7 @@
 
 #include "sheaf/scene.h"
 #include "src/formats/gltf_document.h"
+#include "src/formats/gltf_instances.h"
 #include "src/formats/gltf_meshes.h"
 #include "src/scene/transform.h"
 
@@ -17,7 +18,7 @@ namespace sheaf {
 class GltfNodes {
  public:
   GltfNodes(GltfDocument& document, GltfMeshes& meshes, Scene& scene)
-      : document_(document), meshes_(meshes), scene_(scene) {}
+      : document_(document), meshes_(meshes), scene_(scene), shared_(document.model()) {}
 
   // Everything below the nodes of the file's scene. False with a fault in the document.
   bool Read();
@@ -26,7 +27,8 @@ class GltfNodes {
   bool FindRoots(std::vector<int>* roots);
   // Fills globals_ and order_.
   bool Visit(int index, const Transform& parent, int depth);
-  bool AddMesh(const tinygltf::Node& node, const std::string& place, const Transform& transform);
+  bool AddMesh(int index, const std::string& place, const Transform& transform);
+  bool AddPlace(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool AddCamera(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool AddLight(const tinygltf::Node& node, const std::string& place, const Transform& transform);
   bool ReadSource(const tinygltf::Light& from, const std::string& place, const Vec3d& position,
@@ -40,6 +42,9 @@ class GltfNodes {
   std::vector<Transform> globals_;                               // of all nodes
   std::vector<int> order_;                                       // of those in the scene
   std::map<int, std::optional<std::vector<Transform>>> joints_;  // by skin
+  std::map<int, std::vector<Transform>> places_;                 // by node that has a mesh
+  SharedMeshes shared_;
+  std::map<int, std::uint32_t> groups_;  // of the scene, by mesh that is shared
 };
 
 }  // namespace sheaf

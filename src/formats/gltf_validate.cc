@@ -14,14 +14,20 @@ namespace {
 constexpr int kMaxNesting = 256;
 
 // Those that are read, and those without which a picture is the same.
-constexpr std::string_view kRead[] = {
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",      "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_unlit",    "KHR_materials_volume",
-    "KHR_materials_variants", "KHR_mesh_quantization",
-    "KHR_texture_transform",  "KHR_xmp",
-    "KHR_xmp_json_ld"};
+constexpr std::string_view kRead[] = {"EXT_mesh_gpu_instancing",
+                                      "KHR_lights_punctual",
+                                      "KHR_materials_emissive_strength",
+                                      "KHR_materials_ior",
+                                      "KHR_materials_pbrSpecularGlossiness",
+                                      "KHR_materials_specular",
+                                      "KHR_materials_transmission",
+                                      "KHR_materials_unlit",
+                                      "KHR_materials_volume",
+                                      "KHR_materials_variants",
+                                      "KHR_mesh_quantization",
+                                      "KHR_texture_transform",
+                                      "KHR_xmp",
+                                      "KHR_xmp_json_ld"};
 
 // Those that are named where they cost something: by the image or the primitive.
 constexpr std::string_view kNamedWhereUsed[] = {

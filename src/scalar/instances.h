@@ -107,7 +107,11 @@ class InstanceTracer {
   void Test(std::uint32_t instance) {
     const TreeView<Real>& object = tree_.trees[tree_.object[instance]];
     const Ray<Real> mapped = MapRay(tree_, instance, ray_);
-    Hit<Real> hit = TreeTracer<kQuery, Real>(object, mapped).Trace();
+    if constexpr (kQuery == Query::kOccluded) {
+      if (TraceOccluded(object, mapped)) nearest_.primitive = 0;  // whichever
+      return;
+    }
+    Hit<Real> hit = TraceClosest(object, mapped);
     if (hit.primitive == kNoPrimitive ||
         !TakesOver(hit.t, instance, nearest_.t, nearest_.primitive, nearest_.instance)) {
       return;

@@ -30,6 +30,16 @@ Surface<Real> SurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& 
   return surface;
 }
 
+// Where the instance stands.
+template <typename Real>
+Surface<Real> PlacedSurfaceOf(const FrameView<Real>& frame, const MaterialData<Real>& material,
+                              const Ray<Real>& ray, const Hit<Real>& hit) {
+  const Ray<Real> mapped = MapRay(frame.instances, hit.instance, ray);
+  Surface<Real> surface = SurfaceOf(frame, material, mapped, hit);
+  PlaceSurface(frame, ray, hit.instance, surface);
+  return surface;
+}
+
 // Whether there is any.
 template <typename Real>
 bool IsLight(Vec3<Real> share) {
@@ -55,8 +65,9 @@ Passing PassOn(const FrameView<Real>& frame, const Hit<Real>& hit, Ray<Real>& ra
   if (is_end) return Passing::kArrived;
   const MaterialData<Real>& material = frame.materials[frame.primitives[hit.primitive].material];
   if (!LetsLightPass(material)) return Passing::kBlocked;
-  Surface<Real> surface = SurfaceOf(frame, material, RayAtHit(frame, ray, hit.instance), hit);
-  if (hit.instance != kNoInstance) PlaceSurface(frame, ray, hit.instance, surface);
+  const Surface<Real> surface = hit.instance == kNoInstance
+                                    ? SurfaceOf(frame, material, ray, hit)
+                                    : PlacedSurfaceOf(frame, material, ray, hit);
   share = MultiplyColours(share, PassedAt(material, frame.textures, surface));
   if (!IsLight(share)) return Passing::kBlocked;
   const Vec3<Real> start = surface.position - surface.face * surface.offset;
