@@ -104,10 +104,16 @@ class RayQueue {
   // have any, seeds.
   void FinishParents(const RayBatch<Real>& parents, ChildKind kind, ParentOrder<Real>& order);
 
+  // Moves the rays of the pixels from `pixel` on to `to`, in their order. `stays` is scratch.
+  void MoveFrom(std::uint32_t pixel, std::vector<std::uint8_t>& stays, RayQueue& to);
+
   std::uint32_t count() const { return count_; }
   std::size_t bytes() const { return rays_.bytes() + paths_.bytes(); }
-  RayBatch<Real> batch() const { return {rays_.view(), paths_.view(), count_}; }
-  PathOutput<Real> paths() { return paths_.output(); }
+  // `count` rays from `first` on.
+  RayBatch<Real> batch(std::uint32_t first, std::uint32_t count) const {
+    return {rays_.view(first), paths_.view(first), count};
+  }
+  PathOutput<Real> paths(std::uint32_t first) { return paths_.output(first); }
 
  private:
   RayStream<Real> rays_;
