@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "model_files.h"
 #include "src/formats/png.h"
 #include "src/formats/read_scene.h"
+#include "src/formats/write_scene_json.h"
 
 namespace sheaf {
 namespace {
@@ -92,7 +94,7 @@ TEST_CASE("MTL: a material without a colour is grey; one number is all three") {
   const Read bad = ReadMtl(folder, "Kd 1 x 1\nNs inf\n");
   CHECK(ColourOf(bad) == grey);
   CHECK(bad.warnings ==
-        std::vector<std::string>{"a.mtl:2: Kd: expected a number in [-1e6, 1e9], found \"x\"",
+        std::vector<std::string>{"a.mtl:2: Kd: expected a number in [-1e6, 1e6], found \"x\"",
                                  "a.mtl:3: Ns: expected a number in [-1e6, 1e9], found \"inf\""});
 }
 
@@ -261,6 +263,37 @@ TEST_CASE("MTL: whatever a library holds, the scene is one that can be rendered"
     CHECK(valid.ok());
   }
 }
+
+TEST_CASE("MTL: what is read can be written as scene JSON and read again") {
+  const Folder folder;
+  for (const char* statement :
+       {"Kd 2e6 1 1\n", "Kd 1e6 1 1\n", "Ks 2e6 0 0\nNs 5\n", "Ke 1e7 0 0\n", "Ns 1e9\n",
+        "Ns 2e9\n", "d 0.5\nNi 1e9\n", "Kd -5 0 0\n"}) {
+    CAPTURE(statement);
+    folder.Write("a.mtl", std::string("newmtl m\n") + statement);
+    const auto read =
+        ReadScene(folder.Write("a.obj", "mtllib a.mtl\nusemtl m\n" + kTriangle + kFace));
+    REQUIRE(read.ok());
+    const Result<Scene> again = ParseSceneJson(SceneJsonText(read.value().scene), "again.json");
+    CAPTURE((again ? "" : again.error().message));
+    CHECK(again.ok());
+  }
+}
+
+#ifdef __linux__
+TEST_CASE("MTL: a library that the disk fails to give is an error") {
+  const Folder folder;
+  // Nothing lies at address 0: reading there is an I/O error.
+  std::filesystem::create_symlink("/proc/self/mem", folder / "a.mtl");
+  ReadOptions options;
+  options.outside = Outside::kAllowed;
+  const auto read =
+      ReadScene(folder.Write("a.obj", "mtllib a.mtl\nusemtl m\n" + kTriangle + kFace), options);
+  REQUIRE_FALSE(read.ok());
+  CHECK(read.error().kind == ErrorKind::kInputOutput);
+  CHECK(read.error().message == (folder / "a.mtl") + ": cannot read: Input/output error");
+}
+#endif
 
 TEST_CASE("MTL: libraries that are not there are warnings") {
   const Folder folder;

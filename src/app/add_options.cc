@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <climits>
 
+#include "src/app/allow_threads.h"
 #include "src/formats/format_table.h"
 
 namespace sheaf {
@@ -122,10 +124,24 @@ void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* de
             description, &ParseNames);
 }
 
+void AddThreads(CLI::App& app, std::optional<int>& threads, int min, const char* description) {
+  AddParsed(app, "--threads", threads, "N",
+            fmt::format("a whole number {} to {}", min, kMaxThreads), description,
+            [min](const std::string& text) {
+              const std::optional<int> count = ParseInteger(text, min, kMaxThreads);
+              if (count) AllowThreads(*count);
+              return count;
+            });
+}
+
 void AddThreads(CLI::App& app, std::vector<int>& threads) {
   AddParsed(app, "--threads", threads, "N[,N]",
             fmt::format("a list of whole numbers 1 to {}", kMaxThreads),
-            "Threads, each with every target; 1 if absent", &ParseThreads);
+            "Threads, each with every target; 1 if absent", [](const std::string& text) {
+              std::optional<std::vector<int>> counts = ParseThreads(text);
+              if (counts) AllowThreads(*std::max_element(counts->begin(), counts->end()));
+              return counts;
+            });
 }
 
 void AddJson(CLI::App& app, std::string& destination, const char* description) {

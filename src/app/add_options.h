@@ -91,7 +91,8 @@ void AddPrecision(CLI::App& app, std::string& name, const char* placeholder = nu
 // --targets, a list that ExpandTargets takes.
 void AddTargets(CLI::App& app, std::vector<std::string>& targets, const char* description);
 
-// --threads, a list.
+// --threads, a number from `min` on or a list. Both allow what they are given (allow_threads.h).
+void AddThreads(CLI::App& app, std::optional<int>& threads, int min, const char* description);
 void AddThreads(CLI::App& app, std::vector<int>& threads);
 
 // --json[=FILE]: "-" where it stands alone.

@@ -7,6 +7,7 @@
 
 #include "sheaf/version.h"
 #include "src/app/commands.h"
+#include "src/app/memory_limit.h"
 
 namespace sheaf {
 namespace {
@@ -39,6 +40,7 @@ CommandLine::CommandLine()
     subcommand->footer(Footer(entry.examples));
     commands.emplace_back(subcommand, entry.make());
     commands.back().second.add_options(*subcommand);
+    AddMemoryLimit(*subcommand);
   }
   app->footer(Footer(examples));
 }

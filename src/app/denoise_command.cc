@@ -110,7 +110,7 @@ void AddDenoiseOptions(CLI::App& app, DenoiseRequest& request) {
   AddLookOptions(app, request.look);
   AddName(app, "--target", request.target, "auto|scalar|NAME",
           "SIMD target; sheaf info lists the usable ones");
-  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddThreads(app, request.threads, 0, "Threads; 0: one a core");
   AddChoice(app, "--filter", request.filter, {"sheaf", "oidn"},
             "Sheaf's own, or Open Image Denoise where the build has it");
 }

@@ -1,12 +1,13 @@
 // The command `sheaf`. docs/command.md is its manual.
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <oneapi/tbb/global_control.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
@@ -17,8 +18,10 @@
 #include "sheaf/render.h"
 #include "src/app/command_line.h"
 #include "src/app/exit_code.h"
+#include "src/app/memory_limit.h"
 #include "src/app/print_message.h"
 #include "src/app/standard_output.h"
+#include "src/core/out_of_memory.h"
 #include "src/formats/printable.h"
 #include "src/formats/suggest_name.h"
 
@@ -132,9 +135,6 @@ ExitCode Main(int argc, char** argv) {
   // limit of its size. Ignored, they become failed writes, which are reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  // More threads than cores: a user who asks for them gets them. Nobody else is in this process.
-  const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
-                                            kMaxThreads);
 
   CommandLine line;
   CLI::App& app = *line.app;
@@ -158,18 +158,54 @@ ExitCode Main(int argc, char** argv) {
     return ReportParse(app, error);
   }
   for (const auto& [subcommand, command] : line.commands) {
-    if (subcommand->parsed()) return ToExitCode(command.run());
+    if (!subcommand->parsed()) continue;
+    // The window goes on without a picture that is too large.
+    if (subcommand->get_name() != "view") EndWhereMemoryEnds();
+    return ToExitCode(command.run());
   }
   return ExitCode::kInternal;
 }
 
+[[noreturn]] void ExitOutOfMemory() { _exit(static_cast<int>(ReportMemoryEnd())); }
+
+// Where an exception meets a destructor or a library's function that may throw none, or nobody has
+// entered main yet.
+[[noreturn]] void OnTerminate() {
+  if (const std::exception_ptr thrown = std::current_exception()) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+      ExitOutOfMemory();
+    } catch (const std::exception& error) {
+      if (SpeaksOfMemory(error.what())) ExitOutOfMemory();
+    } catch (...) {
+    }
+    std::abort();
+  }
+  // Without memory for an exception there is none.
+  void* const probe = std::malloc(std::size_t{1} << 16);
+  if (probe == nullptr) ExitOutOfMemory();
+  std::free(probe);
+  std::abort();
+}
+
+void HandleTermination() { std::set_terminate(&OnTerminate); }
+
+#ifdef __GLIBC__
+// Shared libraries allocate before main begins, and before anything else of the command runs.
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const handle_termination)() = &HandleTermination;
+#endif
+
 // Sheaf itself throws nothing. The standard library throws where memory or threads run out.
 int GuardedMain(int argc, char** argv) {
+  HandleTermination();
   try {
     return static_cast<int>(Main(argc, argv));
   } catch (const std::bad_alloc&) {
-    std::fputs("sheaf: not enough memory\n", stderr);
+    return static_cast<int>(ReportMemoryEnd());
   } catch (const std::exception& error) {
+    if (SpeaksOfMemory(error.what())) return static_cast<int>(ReportMemoryEnd());
     PrintMessage(fmt::format("sheaf: internal error: {}", error.what()));
   }
   return static_cast<int>(ExitCode::kInternal);

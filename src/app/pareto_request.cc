@@ -39,7 +39,7 @@ void AddParetoOptions(CLI::App& app, ParetoRequest& request) {
             });
   AddInteger(app, "--repetitions", request.repetitions, 1, 1000,
              "Frames of each setting, of which the median counts; 3 if absent");
-  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 1 if absent");
+  AddThreads(app, request.threads, 0, "Threads; 1 if absent");
   constexpr double kMost = std::numeric_limits<double>::infinity();
   const auto parse = [](const std::string& text) { return ParseNumber(text, 0, kMost); };
   AddParsed(app, "--error", request.error, "E", "a number from 0",

@@ -79,7 +79,7 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
                    "Filter the noise of random samples, guided by albedo, normals and depth");
   AddBits(app, request.bits);
   AddLookOptions(app, request.look);
-  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddThreads(app, request.threads, 0, "Threads; 0: one a core");
   AddParsed(app, "--tile", request.part, "I/N",
             "a part like 2/8 (--tile-size is for pixels a side)", "Render part I of N alone",
             &ParsePart);

@@ -64,7 +64,7 @@ void AddViewOptions(CLI::App& app, ViewArguments& request) {
           "SIMD target; sheaf info lists the usable ones");
   AddPrecision(app, request.precision);
   AddLookOptions(app, request.look);
-  AddInteger(app, "--threads", request.threads, 0, kMaxThreads, "Threads; 0: one a core");
+  AddThreads(app, request.threads, 0, "Threads; 0: one a core");
   AddFlag(app, "--no-floor", request.no_floor, "No floor under a model without lights");
   const auto parse = [](double least, double most) {
     return [least, most](const std::string& text) { return ParseNumber(text, least, most); };

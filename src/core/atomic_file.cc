@@ -14,6 +14,8 @@
 #include <memory>
 #include <utility>
 
+#include "src/core/out_of_memory.h"
+
 namespace sheaf {
 namespace {
 
@@ -28,6 +30,7 @@ struct Destination {
 };
 
 Error InputOutput(const std::string& path, const char* what, int code) {
+  ThrowIfOutOfMemory(code);
   return {ErrorKind::kInputOutput, path + ": " + what + ": " + std::strerror(code)};
 }
 
@@ -48,6 +51,12 @@ std::string FollowDangling(const std::string& path) {
   return target.string();
 }
 
+// Ends in '/'.
+std::string FolderOf(const std::string& path) {
+  const std::string folder = path.substr(0, path.rfind('/') + 1);
+  return folder.empty() ? "./" : folder;
+}
+
 Result<Destination> Resolve(const std::string& path) {
   if (path.empty()) return Error{ErrorKind::kInputOutput, "the output path is empty"};
   struct stat status;
@@ -63,12 +72,12 @@ Result<Destination> Resolve(const std::string& path) {
     destination.mode = status.st_mode & 07777;
     const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr),
                                                            &std::free);
+    if (!real) ThrowIfOutOfMemory(errno);
     // A pipe behind /proc/self/fd has no real path; it is opened by the one it has.
     if (real && destination.kind == PathKind::kRegular) destination.path = real.get();
   }
   if (!exists) destination.path = FollowDangling(path);
-  destination.folder = destination.path.substr(0, destination.path.rfind('/') + 1);
-  if (destination.folder.empty()) destination.folder = "./";
+  destination.folder = FolderOf(destination.path);
   return destination;
 }
 
@@ -158,7 +167,7 @@ Result<AtomicFile> AtomicFile::Create(const std::string& path) {
 
   // 0666 lets the user's umask decide, which mkstemp would not.
   Kind kind = Kind::kNameless;
-  std::string temporary = TemporaryName(destination.folder);
+  std::string temporary;
   int descriptor = OpenNameless(destination.folder);
   if (descriptor < 0) {
     kind = Kind::kNamed;
@@ -206,25 +215,37 @@ Status AtomicFile::WriteAt(std::uint64_t offset, const void* data, std::size_t s
   });
 }
 
-int AtomicFile::Link() {
+int AtomicFile::LinkTo(const std::string& name) const {
   const std::string descriptor = "/proc/self/fd/" + std::to_string(descriptor_);
-  const std::string folder = temporary_.substr(0, temporary_.rfind('/') + 1);
-  return TryNames(folder, temporary_, [&] {
-    return linkat(AT_FDCWD, descriptor.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW);
-  });
+  return linkat(AT_FDCWD, descriptor.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+}
+
+int AtomicFile::Flush() const {
+  const int copy = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+  return copy >= 0 && close(copy) == 0 ? 0 : errno;
+}
+
+int AtomicFile::Link() {
+  if (const int code = Flush(); code != 0) return code;
+  if (LinkTo(destination_) == 0) return 0;
+  if (errno != EEXIST) return errno;
+  std::string name;
+  const int code = TryNames(FolderOf(destination_), name, [&] { return LinkTo(name); });
+  if (code == 0) temporary_ = std::move(name);  // which cannot fail
+  return code;
 }
 
 Status AtomicFile::Commit() {
   assert(descriptor_ >= 0);
   // close() may report a late write error (quota, network file system); the file is then not whole.
-  const int link_code = kind_ == Kind::kNameless ? Link() : 0;
-  int code = close(std::exchange(descriptor_, -1)) == 0 ? link_code : errno;
-  if (kind_ == Kind::kStream) {
-    return code == 0 ? Status(Done{}) : InputOutput(path_, "cannot be written", code);
+  int code = kind_ == Kind::kNameless ? Link() : 0;
+  if (close(std::exchange(descriptor_, -1)) != 0 && kind_ != Kind::kNameless) code = errno;
+  if (code == 0 && !temporary_.empty() &&
+      std::rename(temporary_.c_str(), destination_.c_str()) != 0) {
+    code = errno;
   }
-  if (code == 0 && std::rename(temporary_.c_str(), destination_.c_str()) != 0) code = errno;
   if (code == 0) return Done{};
-  if (link_code == 0) unlink(temporary_.c_str());
+  if (!temporary_.empty()) unlink(temporary_.c_str());
   return InputOutput(path_, "cannot be written", code);
 }
 

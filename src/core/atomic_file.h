@@ -18,8 +18,9 @@ Status CheckWritable(const std::string& path);
 // Bytes go to a temporary in the folder of `path`; Commit() renames it, so that a reader sees the
 // old file or the new one. The temporary has no name before that, and vanishes however the process
 // ends, but on file systems that know no such files: there it is hidden, and removed without a
-// Commit. Pipes and devices (anything under /dev) have no whole to protect: bytes go straight
-// there.
+// Commit. Where it replaces a file it has a hidden name for the moment before the rename, since
+// no system call names a file in another's place. Pipes and devices (anything under /dev) have no
+// whole to protect: bytes go straight there.
 class AtomicFile {
  public:
   static Result<AtomicFile> Create(const std::string& path);
@@ -43,7 +44,12 @@ class AtomicFile {
 
   AtomicFile(int descriptor, Kind kind, std::string path, std::string destination,
              std::string temporary);
-  // Gives a nameless file the name `temporary_`; an errno, or 0.
+  // Gives a nameless file the name `name`; negative with errno where that fails.
+  int LinkTo(const std::string& name) const;
+  // What closing would report, while the file can still be dropped; an errno, or 0.
+  int Flush() const;
+  // A nameless file appears at the destination, or as `temporary_` where that is taken; an errno,
+  // or 0.
   int Link();
   template <typename WriteSome>
   Status WriteAll(std::size_t size, const WriteSome& write_some);
@@ -52,7 +58,7 @@ class AtomicFile {
   Kind kind_;                // of the temporary, or kStream where there is none
   std::string path_;         // as the caller spelled it, for messages
   std::string destination_;  // where the rename goes: `path_` with symbolic links followed
-  std::string temporary_;    // its name; of a nameless one the name that it will have
+  std::string temporary_;    // its name, empty while it has none
 };
 
 // Create, Write and Commit in one.

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "src/core/atomic_file.h"
+#include "src/core/out_of_memory.h"
+#include "src/formats/exr_header.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 
@@ -51,11 +53,13 @@ class FileStream : public Imf::OStream {
       std::memcpy(held_.data() + position_, bytes, size);
     }
     position_ += size;
+    written_ += size;
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override { position_ = position; }
 
   const std::optional<Error>& error() const { return error_; }
+  std::uint64_t written() const { return written_; }  // bytes, those written twice counted twice
   Status Commit() {
     const Status written = file_.Write(held_.data(), held_.size());
     return written ? file_.Commit() : written;
@@ -63,7 +67,7 @@ class FileStream : public Imf::OStream {
 
  private:
   AtomicFile file_;
-  std::uint64_t position_ = 0;
+  std::uint64_t position_ = 0, written_ = 0;
   std::vector<char> held_;
   std::optional<Error> error_;
 };
@@ -143,8 +147,21 @@ class ExrEncoder : public PictureEncoder {
   }
 
   Status Finish() override {
-    const Status ended = Guard([this] { file_.reset(); });
-    return ended ? stream_.Commit() : ended;
+    // The library's destructor writes where the tiles are, 8 bytes each, and keeps to itself what
+    // fails there.
+    const std::uint64_t before = stream_.written();
+    std::uint64_t table = 0;
+    const Status ended = Guard([&] {
+      table = 8u * static_cast<std::uint64_t>(file_->numXTiles()) *
+              static_cast<std::uint64_t>(file_->numYTiles());
+      file_.reset();
+    });
+    if (!ended) return ended;
+    if (stream_.error()) return *stream_.error();
+    if (stream_.written() - before != table) {
+      throw std::bad_alloc();  // the stream itself did not fail
+    }
+    return stream_.Commit();
   }
 
  private:
@@ -156,6 +173,10 @@ class ExrEncoder : public PictureEncoder {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
+      const std::string_view text = error.what();
+      ThrowIfOutOfMemory(text);
+      // Its compressor fails for nothing else.
+      if (text.find("compression (zlib) failed") != std::string_view::npos) throw std::bad_alloc();
       if (stream_.error()) return *stream_.error();
       return InputError(path_, fmt::format("cannot be encoded: {}", Printable(error.what())));
     }
@@ -327,6 +348,7 @@ NewEncoder CreateExrEncoder(const std::string& path, const PictureSpec& spec) {
 Result<ReadPictureResult> ReadExr(const std::string& path) {
   const Result<std::uint64_t> bytes = FileSize(path);
   if (!bytes) return bytes.error();
+  if (const Status sound = CheckExrHeaders(path, bytes.value()); !sound) return sound.error();
   try {
     Imf::InputFile file(path.c_str(), 0);
     const Imf::Header& header = file.header();
@@ -351,6 +373,7 @@ Result<ReadPictureResult> ReadExr(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
+    ThrowIfOutOfMemory(error.what());
     return InputError(path, Printable(error.what()));
   }
 }

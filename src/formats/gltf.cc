@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "src/core/out_of_memory.h"
 #include "src/formats/gltf_animations.h"
 #include "src/formats/gltf_document.h"
 #include "src/formats/gltf_materials.h"
@@ -27,6 +28,7 @@ Result<Scene> ParseGltf(std::string_view bytes, const std::string& name, SceneFi
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // of tinygltf and its JSON library
+    ThrowIfOutOfMemory(error.what());
     return SceneError(name, FirstLine(error.what()));
   }
   const bool is_empty = scene.objects.empty() && scene.instances.empty();

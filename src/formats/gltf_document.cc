@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "src/core/out_of_memory.h"
 #include "src/formats/gltf_validate.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
@@ -132,6 +133,7 @@ bool GltfDocument::LoadModel(const std::string& json) {
   std::string error, warning;
   const auto size = static_cast<unsigned>(json.size());
   if (loader.LoadASCIIFromString(&model_, &error, &warning, json.data(), size, "")) return true;
+  ThrowIfOutOfMemory(error);
   return Fail("", error.empty() ? "no glTF 2.0" : FirstLine(error));
 }
 
@@ -162,7 +164,7 @@ Result<std::string> GltfDocument::BytesOf(const std::string& uri) {
   const std::string reference = DecodeUriPath(uri);
   const Result<std::string> path = files_.Resolve(name_, reference);
   if (!path) return failed(fmt::format("{}: {}", Printable(reference), path.error().message));
-  return ReadWholeFile(path.value());
+  return files_.Read(path.value(), kMaxModelBytes);
 }
 
 Result<std::string> GltfDocument::ImageBytes(std::size_t index) {

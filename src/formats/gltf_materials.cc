@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/formats/read_scene.h"
+#include "src/formats/scene_values.h"
 #include "src/scene/gloss.h"
 #include "src/scene/srgb.h"
 
@@ -87,7 +88,7 @@ bool IsSeenThrough(const Alpha& alpha, const Material& material) {
 std::string FaultOf(const Material& material, const Colour& base) {
   for (const double number : {material.kd, material.ks, base.x, base.y, base.z, material.emission.x,
                               material.emission.y, material.emission.z, material.ior}) {
-    if (!(number <= 1e6)) return "a number is not finite, or above 1e6";
+    if (!(number <= kStrength.high)) return "a number is not finite, or above 1e6";
   }
   return "";
 }
@@ -134,7 +135,7 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   material.name = from.name;
   material.base_colour = surface.base;
   if (const auto* ior = FindExtension(extensions, "KHR_materials_ior")) {
-    material.ior = std::clamp(NumberIn(*ior, "ior", 1.5), 1.0, 1e6);
+    material.ior = std::clamp(NumberIn(*ior, "ior", 1.5), 1.0, kIor.high);
   } else {
     material.ior = 1.5;
   }

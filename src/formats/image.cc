@@ -7,8 +7,10 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <utility>
 
+#include "src/core/out_of_memory.h"
 #include "src/formats/other_images.h"
 #include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
@@ -93,9 +95,13 @@ void InksToColours(bool is_light_left, Image& image) {
 
 Result<Image> DecodeJpeg(std::string_view bytes) {
   const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), &tjDestroy);
-  if (!decoder) return Refused("libjpeg-turbo does not start");
+  if (!decoder) throw std::bad_alloc();  // nothing else can be missing
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  const auto failed = [&] { return Refused(Printable(tjGetErrorStr2(decoder.get()))); };
+  const auto failed = [&] {
+    const char* const text = tjGetErrorStr2(decoder.get());
+    ThrowIfOutOfMemory(text);
+    return Refused(Printable(text));
+  };
   int width = 0, height = 0, subsampling = 0, colours = 0;
   if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling,
                           &colours) != 0) {
@@ -148,7 +154,7 @@ Result<std::shared_ptr<const Image>> ImageCache::Load(const std::string& from,
   if (!path) return Refused(fmt::format("{}: {}", Printable(reference), path.error().message));
   std::shared_ptr<const Image>& image = images_[path.value()];
   if (image) return image;
-  const Result<std::string> bytes = ReadWholeFile(path.value());
+  const Result<std::string> bytes = files.Read(path.value(), kMaxModelBytes);
   if (!bytes) return bytes.error();
   const std::string name = std::filesystem::path(path.value()).filename().string();
   const auto decoded = files.images().Decode(bytes.value(), name);

@@ -7,6 +7,7 @@
 
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/scene_values.h"
 #include "src/formats/text_lines.h"
 
 namespace sheaf {
@@ -15,9 +16,20 @@ namespace {
 constexpr std::pair<std::string_view, std::optional<Colour> MtlMaterial::*> kColours[] = {
     {"Kd", &MtlMaterial::kd}, {"Ks", &MtlMaterial::ks}, {"Ke", &MtlMaterial::ke}};
 
-constexpr std::pair<std::string_view, std::optional<double> MtlMaterial::*> kNumbers[] = {
-    {"Ns", &MtlMaterial::ns}, {"Ni", &MtlMaterial::ni},       {"d", &MtlMaterial::d},
-    {"Tr", &MtlMaterial::tr}, {"illum", &MtlMaterial::illum},
+// Up to what scene JSON takes, so that what is read here can be written there. Exporters write
+// colours below 0, which are taken for black.
+constexpr NumberRange kWithin{-1e6, kStrength.high, "a number in [-1e6, 1e6]"};
+constexpr NumberRange kExponent{-1e6, kShininess.high, "a number in [-1e6, 1e9]"};
+
+struct MtlNumber {
+  std::string_view name;
+  std::optional<double> MtlMaterial::*member;
+  const NumberRange& range;
+};
+constexpr MtlNumber kNumbers[] = {
+    {"Ns", &MtlMaterial::ns, kExponent},     {"Ni", &MtlMaterial::ni, kWithin},
+    {"d", &MtlMaterial::d, kWithin},         {"Tr", &MtlMaterial::tr, kWithin},
+    {"illum", &MtlMaterial::illum, kWithin},
 };
 
 constexpr std::string_view kMaps[] = {
@@ -66,7 +78,7 @@ bool MtlLibraries::ReadFile(std::string_view reference, std::string* failure) {
   }
   // Some writers name the library before every object.
   if (std::find(paths_.begin(), paths_.end(), path.value()) != paths_.end()) return true;
-  const Result<std::string> bytes = ReadWholeFile(path.value(), kMaxTextBytes);
+  const Result<std::string> bytes = files_.Read(path.value(), kMaxTextBytes);
   if (!bytes) {
     *failure = bytes.error().message;
     return false;
@@ -99,11 +111,13 @@ void MtlLibraries::ReadStatement(TextScanner& scanner, const std::string& path) 
     if (const auto colour = ReadColour(scanner, key, path)) material.*member = colour;
     return;
   }
-  for (const auto& [name, member] : kNumbers) {
+  for (const auto& [name, member, range] : kNumbers) {
     if (key != name) continue;
     std::string_view word = scanner.Word();
     if (key == "d" && word == "-halo") word = scanner.Word();
-    if (const auto number = ReadNumber(scanner, word, key, path)) material.*member = number;
+    if (const auto number = ReadNumber({word, scanner.line()}, range, key, path)) {
+      material.*member = number;
+    }
     return;
   }
   if (std::find(std::begin(kMaps), std::end(kMaps), key) != std::end(kMaps)) {
@@ -117,19 +131,19 @@ std::optional<Colour> MtlLibraries::ReadColour(TextScanner& scanner, std::string
   for (int i = 0; i < 3; ++i) {
     const std::string_view word = scanner.Word();
     if (i == 1 && (word.empty() || word.starts_with('#'))) return Colour(colour.x);  // for all
-    const auto number = ReadNumber(scanner, word, key, path);
+    const auto number = ReadNumber({word, scanner.line()}, kWithin, key, path);
     if (!number) return std::nullopt;
     colour[i] = *number;
   }
   return colour;
 }
 
-std::optional<double> MtlLibraries::ReadNumber(TextScanner& scanner, std::string_view word,
+std::optional<double> MtlLibraries::ReadNumber(const PlacedWord& word, const NumberRange& range,
                                                std::string_view key, const std::string& path) {
-  const auto number = ParseWord<double>(word);
-  if (number && *number >= -1e6 && *number <= 1e9) return number;
-  files_.Warn(PlaceOf(path, scanner.line()), key,
-              fmt::format("expected a number in [-1e6, 1e9], found \"{}\"", Printable(word, 40)));
+  const auto number = ParseWord<double>(word.text);
+  if (number && *number >= range.low && *number <= range.high) return number;
+  files_.Warn(PlaceOf(path, word.line), key,
+              fmt::format("expected {}, found \"{}\"", range.text, Printable(word.text, 40)));
   return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sheaf/scene.h"
+#include "src/formats/json_cursor.h"
 #include "src/formats/scene_files.h"
 #include "src/formats/text_scanner.h"
 
@@ -55,7 +56,11 @@ class MtlLibraries {
   void ReadStatement(TextScanner& scanner, const std::string& path);
   std::optional<Colour> ReadColour(TextScanner& scanner, std::string_view key,
                                    const std::string& path);
-  std::optional<double> ReadNumber(TextScanner& scanner, std::string_view word,
+  struct PlacedWord {
+    std::string_view text;
+    std::size_t line;
+  };
+  std::optional<double> ReadNumber(const PlacedWord& word, const NumberRange& range,
                                    std::string_view key, const std::string& path);
   MtlMap ReadMap(TextScanner& scanner, const std::string& path);
 

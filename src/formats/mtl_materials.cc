@@ -10,6 +10,7 @@
 
 #include "src/formats/printable.h"
 #include "src/formats/read_scene.h"
+#include "src/formats/scene_values.h"
 #include "src/formats/text_lines.h"
 
 namespace sheaf {
@@ -94,7 +95,7 @@ Material MtlMaterials::Make(const MtlMaterial& from) {
   if (illum >= 3 && illum < 9) material.reflect = glm::min(specular, Colour(opacity));
   if (opacity < 1) {
     material.kd = opacity;
-    material.ior = std::clamp(from.ni.value_or(1), 1e-6, 1e6);
+    material.ior = std::clamp(from.ni.value_or(1), kIor.low, kIor.high);
   }
   return material;
 }

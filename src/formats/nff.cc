@@ -12,6 +12,7 @@
 #include "src/formats/losses.h"
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
+#include "src/formats/scene_values.h"
 #include "src/formats/text_scanner.h"
 #include "src/formats/triangulate.h"
 #include "src/scene/transform.h"
@@ -105,7 +106,7 @@ class NffReader {
   }
 
   void ReadBackground() {
-    ReadTriple("background", &scene_.settings.background, 0, 1e6);
+    ReadTriple("background", &scene_.settings.background, 0, kStrength.high);
     ExpectEnd();
   }
 
@@ -159,7 +160,7 @@ class NffReader {
     light.source = point;
     const std::string_view rest = scanner_.Remainder();
     if (!rest.empty()) {
-      if (!ReadTriple("light colour", &light.colour, 0, 1e6)) return;
+      if (!ReadTriple("light colour", &light.colour, 0, kStrength.high)) return;
       light.intensity = 1;
     } else {
       light.intensity = 0;  // its share is known when all lights are
@@ -179,13 +180,16 @@ class NffReader {
   void ReadFill() {
     Colour colour;
     double kd = 0, ks = 0, shine = 0, transmit = 0, ior = 1;
-    const bool is_read =
-        ReadTriple("fill colour", &colour, 0, 1e6) && ReadNumber("fill Kd", &kd, 0, 1e6) &&
-        ReadNumber("fill Ks", &ks, 0, 1e6) && ReadNumber("fill shine", &shine, 0, 1e9) &&
-        ReadNumber("fill T", &transmit, 0, 1) && ReadNumber("fill index", &ior, 0, 1e6);
+    const bool is_read = ReadTriple("fill colour", &colour, 0, kStrength.high) &&
+                         ReadNumber("fill Kd", &kd, 0, kStrength.high) &&
+                         ReadNumber("fill Ks", &ks, 0, kStrength.high) &&
+                         ReadNumber("fill shine", &shine, 0, kShininess.high) &&
+                         ReadNumber("fill T", &transmit, 0, 1) &&
+                         ReadNumber("fill index", &ior, 0, kIor.high);
     if (!is_read) return;
     ExpectEnd();
-    if (transmit > 0 && ior < 1e-6) return Fail("fill index: a transparent fill needs one above 0");
+    if (transmit > 0 && ior < kIor.low)
+      return Fail("fill index: a transparent fill needs one above 0");
     Material material;
     material.base_colour = colour;
     material.kd = kd;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/core/out_of_memory.h"
 #include "src/formats/image_module.h"
 #include "src/formats/printable.h"
 #include "src/scene/srgb.h"
@@ -103,6 +104,7 @@ Result<Pixels> Decode(std::string_view bytes) {
   }
   ModuleImage image;
   if (!decode(bytes.data(), bytes.size(), kind->ending, kMaxTextureSide, image)) {
+    ThrowIfOutOfMemory(image.error);
     return Refused(fmt::format("{}: {}", kind->name, Printable(image.error)));
   }
   return Pixels{image.width, image.height, SpreadChannels(image), kind->is_light};

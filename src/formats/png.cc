@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
 #include "sheaf/version.h"
 #include "src/core/atomic_file.h"
+#include "src/core/out_of_memory.h"
 #include "src/formats/png_reader.h"
 #include "src/formats/printable.h"
 #include "src/formats/quantize.h"
@@ -32,9 +34,12 @@ class PngWriter {
         spec_(spec),
         channels_(channels),
         rows_left_(spec.window.height()),
-        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, &OnPngError,
-                                     &OnPngWarning)) {
+        png_(png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &complaint_, &OnPngError,
+                                       &OnPngWarning, &heap_, &PngHeap::Allocate, &PngHeap::Free)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ != nullptr) return;
+    png_destroy_write_struct(&png_, nullptr);
+    throw std::bad_alloc();  // nothing else can be missing
   }
   PngWriter(const PngWriter&) = delete;
   PngWriter& operator=(const PngWriter&) = delete;
@@ -65,7 +70,6 @@ class PngWriter {
  private:
   // False: see `complaint_`, and so for the two below.
   bool EncodeHeader() {
-    if (info_ == nullptr) return false;
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_write_fn(png_, this, &WriteToFile, nullptr);
     // Of the filters, that of the pixel before is best for most pictures, and no row has to be
@@ -119,8 +123,9 @@ class PngWriter {
     if (!status) writer->error_ = status.error();
   }
 
-  Status StatusOf(bool encoded) const {
+  Status StatusOf(bool encoded) {
     if (error_) return *error_;
+    if (!encoded) heap_.Explain(&complaint_);
     if (!encoded) return InputError(path_, fmt::format("cannot be encoded: {}", complaint_.text));
     return Done{};
   }
@@ -132,6 +137,7 @@ class PngWriter {
   PictureMetadata texts_;
   int channels_, rows_left_;
   PngComplaint complaint_;
+  PngHeap heap_;
   png_structp png_;
   png_infop info_ = nullptr;
 };
@@ -177,21 +183,23 @@ Result<std::vector<std::uint8_t>> ReadPixels(const std::string& path, PngPixels 
                                              PngReader& reader) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
-  if (!file) return InputError(path, std::strerror(errno));
+  if (!file) {
+    ThrowIfOutOfMemory(errno);
+    return InputError(path, std::strerror(errno));
+  }
   const auto failed = [&] {
     return InputError(path, std::feof(file.get()) != 0
                                 ? "no whole PNG: the file is empty or cut short"
                                 : Printable(reader.complaint.text));
   };
-  if (!reader.ReadHeader(file.get(), pixels)) return failed();
+  if (std::fseek(file.get(), 0, SEEK_END) != 0) return InputError(path, "is no seekable file");
+  const auto size = static_cast<std::size_t>(std::ftell(file.get()));
+  std::rewind(file.get());
+  if (!reader.ReadHeader(file.get(), size, pixels)) return failed();
 
   const auto height = static_cast<std::size_t>(reader.height);
   // Deflate shrinks at most 1032 to 1: a header that promises more pixels than that lies. Packed
   // formats (1 bit a pixel, spread to 24) have that much less behind each byte.
-  const long begin = std::ftell(file.get());
-  if (std::fseek(file.get(), 0, SEEK_END) != 0) return InputError(path, "is no seekable file");
-  const auto size = static_cast<std::size_t>(std::ftell(file.get()));
-  std::fseek(file.get(), begin, SEEK_SET);
   if (reader.row_bytes * height / (std::size_t{24} * 1032) > size) {
     return InputError(path, "has more pixels than its bytes can hold");
   }

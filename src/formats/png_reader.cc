@@ -1,8 +1,14 @@
 #include "src/formats/png_reader.h"
 
+#include <algorithm>
 #include <csetjmp>
+#include <cstddef>
+#include <cstdlib>
 #include <cstring>
+#include <new>
 #include <vector>
+
+#include "src/formats/read_file.h"
 
 namespace sheaf {
 
@@ -14,24 +20,70 @@ void OnPngError(png_structp png, png_const_charp message) {
 
 void OnPngWarning(png_structp, png_const_charp) {}
 
+// Before each block its size, and padding that keeps the block aligned.
+constexpr std::size_t kBlockHeader = alignof(std::max_align_t);
+static_assert(kBlockHeader >= sizeof(std::size_t));
+
+png_voidp PngHeap::Allocate(png_structp png, png_alloc_size_t bytes) {
+  auto* heap = static_cast<PngHeap*>(png_get_mem_ptr(png));
+  if (bytes > heap->most_ - std::min(heap->used_, heap->most_)) {
+    heap->is_beyond_most_ = true;
+    return nullptr;
+  }
+  void* const block = std::malloc(kBlockHeader + bytes);
+  if (block == nullptr) {
+    heap->is_exhausted_ = true;
+    return nullptr;
+  }
+  heap->used_ += bytes;
+  std::memcpy(block, &bytes, sizeof bytes);
+  return static_cast<char*>(block) + kBlockHeader;
+}
+
+void PngHeap::Free(png_structp png, png_voidp memory) {
+  if (memory == nullptr) return;
+  void* const block = static_cast<char*>(memory) - kBlockHeader;
+  std::size_t bytes;
+  std::memcpy(&bytes, block, sizeof bytes);
+  static_cast<PngHeap*>(png_get_mem_ptr(png))->used_ -= bytes;
+  std::free(block);
+}
+
+void PngHeap::Explain(PngComplaint* complaint) const {
+  if (is_exhausted_) throw std::bad_alloc();
+  if (!is_beyond_most_) return;
+  std::snprintf(complaint->text, sizeof(complaint->text),
+                "its chunks claim more than the %zu MiB that a file of its size may take",
+                most_ >> 20);
+}
+
 PngReader::PngReader()
-    : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint, &OnPngError, &OnPngWarning)) {
+    : png_(png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &complaint, &OnPngError, &OnPngWarning,
+                                    &heap_, &PngHeap::Allocate, &PngHeap::Free)) {
   if (png_ != nullptr) info_ = png_create_info_struct(png_);
+  if (info_ != nullptr) return;
+  png_destroy_read_struct(&png_, nullptr, nullptr);
+  throw std::bad_alloc();  // nothing else can be missing
 }
 
 PngReader::~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-bool PngReader::ReadHeader(std::FILE* file, PngPixels pixels) {
-  if (info_ == nullptr) return false;
+bool PngReader::Explained(bool succeeded) {
+  if (!succeeded) heap_.Explain(&complaint);
+  return succeeded;
+}
+
+bool PngReader::ReadHeader(std::FILE* file, std::size_t file_bytes, PngPixels pixels) {
+  heap_.SetMost(MostMemoryFor(file_bytes));
   png_init_io(png_, file);
-  return ReadInfo(pixels);
+  return Explained(ReadInfo(pixels));
 }
 
 bool PngReader::ReadHeader(std::string_view bytes, PngPixels pixels) {
-  if (info_ == nullptr) return false;
+  heap_.SetMost(MostMemoryFor(bytes.size()));
   bytes_ = bytes;
   png_set_read_fn(png_, this, &ReadBytes);
-  return ReadInfo(pixels);
+  return Explained(ReadInfo(pixels));
 }
 
 void PngReader::ReadBytes(png_structp png, png_bytep to, std::size_t count) {
@@ -88,7 +140,7 @@ bool PngReader::ReadRows(std::uint8_t* rows) {
     start = rows;
     rows += row_bytes;
   }
-  return ReadImage(starts.data());
+  return Explained(ReadImage(starts.data()));
 }
 
 bool PngReader::ReadImage(png_bytepp rows) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <system_error>
 
+#include "src/core/out_of_memory.h"
 #include "src/formats/held_files.h"
 #include "src/formats/printable.h"
 
@@ -16,6 +17,7 @@ namespace sheaf {
 namespace {
 
 Error SystemError(const std::string& path, std::string_view what, int code) {
+  ThrowIfOutOfMemory(code);
   return InputError(path, fmt::format("{}: {}", what, std::generic_category().message(code)));
 }
 
@@ -40,14 +42,19 @@ Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view w
   return {ErrorKind::kScene, fmt::format("{}:{}: {}", PrintablePath(path), line, what)};
 }
 
-Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes) {
+Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes, int* code) {
+  const auto fail = [&](std::string_view what, int reason) {
+    if (code != nullptr) *code = reason;
+    return SystemError(path, what, reason);
+  };
+  if (code != nullptr) *code = 0;
   if (const std::string* held = FindHeldFile(path)) {
     if (held->size() > max_bytes) return InputError(path, "larger than " + SizeText(max_bytes));
     return *held;
   }
-  if (AreAllFilesHeld()) return SystemError(path, "cannot open", ENOENT);
+  if (AreAllFilesHeld()) return fail("cannot open", ENOENT);
   const OpenFile file(std::fopen(path.c_str(), "rb"));
-  if (!file) return SystemError(path, "cannot open", errno);
+  if (!file) return fail("cannot open", errno);
   // The size is only a hint, since pipes have none; the limit holds while reading.
   struct stat status {};
   std::string text;
@@ -57,16 +64,18 @@ Result<std::string> ReadWholeFile(const std::string& path, std::size_t max_bytes
   }
   // One read of all that is expected, and small ones for what a pipe still has.
   std::size_t size = 0;
+  int reason = 0;
   for (;;) {
     const std::size_t step = std::max<std::size_t>(expected - std::min(size, expected), 1 << 16);
     text.resize(size + step);
     const std::size_t count = std::fread(text.data() + size, 1, step, file.get());
+    if (std::ferror(file.get())) reason = errno;  // before anything else can change it
     size += count;
     text.resize(size);
     if (size > max_bytes) return InputError(path, "larger than " + SizeText(max_bytes));
     if (count == 0) break;
   }
-  if (std::ferror(file.get())) return SystemError(path, "cannot read", errno);
+  if (reason != 0) return fail("cannot read", reason);
   HoldFile(path, text);
   return text;
 }

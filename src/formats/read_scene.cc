@@ -89,22 +89,19 @@ Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& op
 
 Result<ReadSceneResult> ReadScene(const std::string& path, const ReadOptions& options,
                                   DecodedImages& images) {
-  try {
-    SceneFiles files(path, options, &images);
-    files.Enter(path);
-    Result<Scene> scene = ReadSceneFile(path, files);
-    if (!scene) return scene.error();
-    if (const Status known = CheckAnimation(path, files); !known) return known.error();
-    KeyLight key_light = KeyLight::kAbsent;
-    if (IsModelPath(path)) {
-      key_light = Complete(&scene.value(), options);
-      scene.value().settings.transfer = FindFormat(path)->model_transfer;
-    }
-    return ReadSceneResult{std::move(scene).value(), key_light, files.warnings().Lines(),
-                           files.paths(), files.duration()};
-  } catch (const std::bad_alloc&) {
-    return InputError(path, "not enough memory to read the file");
+  SceneFiles files(path, options, &images);
+  files.Enter(path);
+  Result<Scene> scene = ReadSceneFile(path, files);
+  if (files.fault()) return *files.fault();
+  if (!scene) return scene.error();
+  if (const Status known = CheckAnimation(path, files); !known) return known.error();
+  KeyLight key_light = KeyLight::kAbsent;
+  if (IsModelPath(path)) {
+    key_light = Complete(&scene.value(), options);
+    scene.value().settings.transfer = FindFormat(path)->model_transfer;
   }
+  return ReadSceneResult{std::move(scene).value(), key_light, files.warnings().Lines(),
+                         files.paths(), files.duration()};
 }
 
 }  // namespace sheaf

@@ -1,6 +1,9 @@
 #include "src/formats/scene_files.h"
 
 #include <algorithm>
+#include <cerrno>
+
+#include "src/formats/read_file.h"
 
 namespace sheaf {
 namespace {
@@ -14,6 +17,12 @@ fs::path Canonical(const fs::path& path) {
   const fs::path absolute = fs::absolute(path, error);
   const fs::path canonical = fs::weakly_canonical(absolute, error);
   return error ? absolute.lexically_normal() : canonical;
+}
+
+// Whether an errno of opening or reading is about the path, not about the machine.
+bool IsOfPath(int code) {
+  constexpr int kCodes[] = {0, ENOENT, ENOTDIR, EACCES, EPERM, EISDIR, ELOOP, ENAMETOOLONG, ENXIO};
+  return std::find(std::begin(kCodes), std::end(kCodes), code) != std::end(kCodes);
 }
 
 }  // namespace
@@ -37,6 +46,13 @@ Result<std::string> SceneFiles::Resolve(const std::string& from, const std::stri
   }
   paths_.push_back(path.string());
   return path.string();
+}
+
+Result<std::string> SceneFiles::Read(const std::string& path, std::size_t max_bytes) {
+  int code = 0;
+  Result<std::string> bytes = ReadWholeFile(path, max_bytes, &code);
+  if (!bytes && !IsOfPath(code) && !fault_) fault_ = bytes.error();
+  return bytes;
 }
 
 void SceneFiles::AddAnimation(const std::string& name, double seconds) {

@@ -2,7 +2,9 @@
 #ifndef SHEAF_FORMATS_SCENE_FILES_H_
 #define SHEAF_FORMATS_SCENE_FILES_H_
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +30,11 @@ class SceneFiles {
   // The path of `reference`, as the file `from` names it: relative to its folder. An error, without
   // a place, where it leaves the scene's folder and may not.
   Result<std::string> Resolve(const std::string& from, const std::string& reference);
+
+  // The bytes of a file that was resolved. Whoever calls may do without a file that is missing; a
+  // disk or a system that fails is a fault of the whole scene, which must not look well without.
+  Result<std::string> Read(const std::string& path, std::size_t max_bytes);
+  const std::optional<Error>& fault() const { return fault_; }
 
   // Includes: false where `path` is being read already.
   bool Enter(const std::string& path);
@@ -56,6 +63,7 @@ class SceneFiles {
   std::vector<std::filesystem::path> open_;
   Warnings warnings_;
   std::vector<std::string> paths_;
+  std::optional<Error> fault_;  // the first
   std::vector<std::string> animations_;
   double duration_ = 0;
 };

@@ -299,13 +299,9 @@ Result<Scene> ReadSceneJson(const std::string& path) {
 }
 
 Result<Scene> ReadSceneJson(const std::string& path, SceneFiles& files) {
-  try {
-    const Result<std::string> text = ReadWholeFile(path, kMaxTextBytes);
-    if (!text) return text.error();
-    return ParseSceneJson(text.value(), path, files);
-  } catch (const std::bad_alloc&) {
-    return InputError(path, "not enough memory to read the file");
-  }
+  const Result<std::string> text = ReadWholeFile(path, kMaxTextBytes);
+  if (!text) return text.error();
+  return ParseSceneJson(text.value(), path, files);
 }
 
 Result<Scene> ParseSceneJson(std::string_view text, const std::string& name) {
@@ -316,16 +312,12 @@ Result<Scene> ParseSceneJson(std::string_view text, const std::string& name) {
 Result<Scene> ParseSceneJson(std::string_view text, const std::string& name, SceneFiles& files) {
   // The limit also keeps the tree's 32-bit node indices from overflowing.
   if (text.size() > kMaxTextBytes) return InputError(name, "larger than 1 GiB");
-  try {
-    const Result<JsonTree> tree = ParseJsonTree(text, name);
-    if (!tree) return tree.error();
-    JsonErrors errors(tree.value(), name);
-    Scene scene = ReadRoot(JsonCursor(&errors, 0), errors, name, files);
-    if (errors.first()) return *errors.first();
-    return scene;
-  } catch (const std::bad_alloc&) {
-    return InputError(name, "not enough memory to read the scene");
-  }
+  const Result<JsonTree> tree = ParseJsonTree(text, name);
+  if (!tree) return tree.error();
+  JsonErrors errors(tree.value(), name);
+  Scene scene = ReadRoot(JsonCursor(&errors, 0), errors, name, files);
+  if (errors.first()) return *errors.first();
+  return scene;
 }
 
 }  // namespace sheaf

@@ -10,8 +10,6 @@
 namespace sheaf {
 namespace {
 
-constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
-constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
 constexpr NumberRange kDistance{1e-30, kMaxCoordinate, "a number in [1e-30, 1e30]"};
 constexpr NumberRange kUnit{0.0, 1.0, "a number in [0, 1]"};
 constexpr NumberRange kPlacing{-1e6, 1e6, "a number in [-1e6, 1e6]"};

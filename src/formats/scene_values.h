@@ -22,6 +22,8 @@ inline constexpr NumberRange kCoordinate{-kMaxCoordinate, kMaxCoordinate,
 inline constexpr NumberRange kRadius{0.0, kMaxCoordinate, "a number in [0, 1e30]"};
 inline constexpr NumberRange kFraction{0.0, 1.0, "a number in [0, 1]"};
 inline constexpr NumberRange kStrength{0.0, 1e6, "a number in [0, 1e6]"};
+inline constexpr NumberRange kShininess{0.0, 1e9, "a number in [0, 1e9]"};
+inline constexpr NumberRange kIor{1e-6, 1e6, "a number in [1e-6, 1e6]"};
 inline constexpr double kSmallestPositive = 4.9406564584124654e-324;
 
 inline constexpr std::string_view kColourText = "a colour ([r, g, b] or one number)";

@@ -60,6 +60,48 @@ void RayQueue<Real>::FinishParents(const RayBatch<Real>& parents, ChildKind kind
   }
 }
 
+template <typename Real>
+void RayQueue<Real>::MoveFrom(std::uint32_t pixel, std::vector<std::uint8_t>& stays, RayQueue& to) {
+  const PathOutput<Real> from_paths = paths_.output();
+  stays.resize(count_);
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    stays[i] = from_paths.pixel[i] < pixel;
+    kept += stays[i];
+  }
+  to.count_ = count_ - kept;
+  const auto move = [&](auto*& from, auto*& other) {
+    if (!from) return;
+    std::uint32_t stayed = 0, moved = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (stays[i]) {
+        from[stayed++] = from[i];
+      } else {
+        other[moved++] = from[i];
+      }
+    }
+  };
+  if (count_ > 0) {
+    std::uint64_t fields = 0, bit = 1;
+    ForEachField(from_paths, [&](auto* field) {
+      if (field) fields |= bit;
+      bit <<= 1;
+    });
+    to.rays_.Reserve(to.count_);
+    to.paths_.Reserve(to.count_, fields);
+    RayOutput<Real> rays = rays_.output(), to_rays = to.rays_.output();
+    PathOutput<Real> paths = from_paths, to_paths = to.paths_.output();
+    ForEachField(rays, to_rays, move);
+    ForEachField(paths, to_paths, move);
+    to.source_instances_.resize(source_instances_.empty() ? 0 : to.count_);
+    std::uint32_t* instances = source_instances_.empty() ? nullptr : source_instances_.data();
+    std::uint32_t* to_instances = to.source_instances_.data();
+    move(instances, to_instances);
+    if (instances) source_instances_.resize(kept);
+  }
+  count_ = kept;
+}
+
 template class ParentOrder<float>;
 template class ParentOrder<double>;
 template class RayQueue<float>;

@@ -108,16 +108,20 @@ class RayQueue {
   void FinishParents(const RayBatch<Real>& parents, ChildKind kind,
                      const std::uint32_t* hit_instances, ParentOrder<Real>& order);
 
+  // Moves the rays of the pixels from `pixel` on to `to`, in their order. `stays` is scratch.
+  void MoveFrom(std::uint32_t pixel, std::vector<std::uint8_t>& stays, RayQueue& to);
+
   std::uint32_t count() const { return count_; }
   std::size_t bytes() const {
     return rays_.bytes() + paths_.bytes() + source_instances_.capacity() * sizeof(std::uint32_t);
   }
-  RayBatch<Real> batch() const {
+  // `count` rays from `first` on.
+  RayBatch<Real> batch(std::uint32_t first, std::uint32_t count) const {
     const bool has_instances = !source_instances_.empty();
-    return {rays_.view(), paths_.view(), count_,
-            has_instances ? source_instances_.data() : nullptr};
+    return {rays_.view(first), paths_.view(first), count,
+            has_instances ? source_instances_.data() + first : nullptr};
   }
-  PathOutput<Real> paths() { return paths_.output(); }
+  PathOutput<Real> paths(std::uint32_t first) { return paths_.output(first); }
 
  private:
   RayStream<Real> rays_;

@@ -71,27 +71,42 @@ void TileRenderer<Real>::RenderSample(const PixelList<Real>& pixels, std::size_t
   const RayBatch<Real> primary =
       primary_.batch(frame_.is_distributed ? samples_.pixel_seeds() : nullptr);
   Shade(primary, Trace(primary), 0, sample_, recorder);
-  for (int depth = 1;; ++depth) {
+  FollowRays(pixels.count);
+}
+
+// Breadth first; where a depth has outgrown its memory, the rays of some pixels to their end, then
+// those of the others. A pixel's light is added up in the same order either way.
+template <typename Real>
+void TileRenderer<Real>::FollowRays(std::uint32_t pixels) {
+  const std::uint32_t most = MostRaysAtOnce(pixels);
+  held_.Start(pixels);
+  for (int depth = 1; !IsStopped(); ++depth) {
     std::swap(queues_, next_queues_);
     std::uint32_t spawned = 0;
     for (const RayQueue<Real>& queue : queues_) spawned += queue.count();
-    if (spawned == 0) break;
     rays_.reflected += queues_[0].count();
     rays_.refracted += queues_[1].count();
     rays_.diffuse += queues_[2].count();
-    if (depth > frame_.max_depth) {  // these count, and are black
-      rays_.beyond_depth += spawned;
-      break;
+    if (depth > frame_.max_depth) rays_.beyond_depth += spawned;  // these count, and are black
+    if (spawned == 0 || depth > frame_.max_depth) {
+      if (!held_.TakeLast(&depth, queues_)) return;
+      spawned = most + 1;  // they may have to be divided again
     }
+    if (spawned > most) spawned = held_.Divide(depth, most, queues_);
     for (RayQueue<Real>& queue : next_queues_) queue.Reset(spawned);
-    for (RayQueue<Real>& queue : queues_) {
-      if (IsStopped()) return;
-      const RayBatch<Real> batch = queue.batch();
-      if (batch.count == 0) continue;
+    ShadeDepth(depth, most);
+  }
+}
+
+template <typename Real>
+void TileRenderer<Real>::ShadeDepth(int depth, std::uint32_t most) {
+  for (RayQueue<Real>& queue : queues_) {
+    for (std::uint32_t first = 0; first < queue.count() && !IsStopped(); first += most) {
+      const RayBatch<Real> batch = queue.batch(first, std::min(most, queue.count() - first));
       ray_colours_.Reserve(batch.count);
       const RayBatch<Real> seen = Trace(batch);
       if (frame_.attenuates) {
-        AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue.paths());
+        AttenuatePaths(frame_, batch.rays, hits_.view(), batch.count, queue.paths(first));
       }
       Shade(batch, seen, depth, ray_colours_, nullptr);
       AccumulateColours(ray_colours_.view(), batch.paths, batch.count, sample_.output());
@@ -284,7 +299,7 @@ std::size_t TileRenderer<Real>::buffer_bytes() const {
   for (const auto& queues : {std::span(queues_), std::span(next_queues_)}) {
     for (const RayQueue<Real>& queue : queues) add(queue);
   }
-  add(parent_order_);
+  add(held_, parent_order_);
   add(hits_, surfaces_, texels_, ray_colours_, surface_colours_);
   return sum;
 }

@@ -13,6 +13,7 @@
 #include "src/render/average_samples.h"
 #include "src/render/bin_hits.h"
 #include "src/render/find_edges.h"
+#include "src/render/held_rays.h"
 #include "src/render/instanced_hits.h"
 #include "src/render/pixel_order.h"
 #include "src/render/ray_queue.h"
@@ -46,6 +47,10 @@ class TileRenderer : public TileWorker {
   // primary rays hit.
   void RenderSample(const PixelList<Real>& pixels, std::size_t sample,
                     FirstHitRecorder<Real>* recorder);
+  // The secondary rays that the primary ones sent on, and theirs, to the end.
+  void FollowRays(std::uint32_t pixels);
+  // Rays of this depth, whose children make the next.
+  void ShadeDepth(int depth, std::uint32_t most);
   void GeneratePrimary(const PixelList<Real>& pixels, std::size_t sample);
   // Leaves hits_ and the bins. Returns the batch with each ray as what it hits sees it.
   RayBatch<Real> Trace(const RayBatch<Real>& batch);
@@ -86,6 +91,7 @@ class TileRenderer : public TileWorker {
   PrimaryRays<Real> primary_;
   // The rays of this depth and of the next, by kind.
   RayQueue<Real> queues_[kChildKinds], next_queues_[kChildKinds];
+  HeldRays<Real> held_;
   ParentOrder<Real> parent_order_;
 
   HitStream<Real> hits_;

@@ -4,7 +4,7 @@
 // docs/formats.md says what each of them holds. Every function here may run on several threads at
 // once, as long as no two of them write one file. Failures are returned as an Error, whose message
 // names the file and, where it is malformed, the place in it. Only std::bad_alloc is thrown, where
-// memory ends; ReadScene and ParseSceneJson return that as an Error too.
+// memory ends.
 #ifndef SHEAF_SHEAF_FORMATS_H_
 #define SHEAF_SHEAF_FORMATS_H_
 

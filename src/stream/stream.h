@@ -49,12 +49,13 @@ class Stream {
     return sum;
   }
 
-  Fields<Real, ConstField> view() const {
+  // Both: the elements from `first` on; `first` + count stays within the n of Allocate or Reserve.
+  Fields<Real, ConstField> view(std::uint32_t first = 0) const {
     Fields<Real, ConstField> view;
-    ForEachField(view, arrays_, [](auto& to, auto& from) { to = from.data(); });
+    ForEachField(view, arrays_,
+                 [&](auto& to, auto& from) { to = from.data() ? from.data() + first : nullptr; });
     return view;
   }
-  // The elements from `first` on; `first` + count stays within the n of Allocate or Reserve.
   Fields<Real, MutableField> output(std::uint32_t first = 0) {
     Fields<Real, MutableField> view;
     ForEachField(view, arrays_,
