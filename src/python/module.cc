@@ -18,5 +18,6 @@ PYBIND11_MODULE(_sheaf, module) {
   });
   sheaf::python::AddErrors(module);
   sheaf::python::AddGeometry(module);
+  sheaf::python::AddInstances(module);
   sheaf::python::AddScenes(module);
 }

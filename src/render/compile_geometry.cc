@@ -240,6 +240,7 @@ Status CompiledGeometry<Real>::BuildTrees(int threads) {
     first = end;
   }
   if (!places.empty()) forest = BuildInstances<Real>(places, std::move(views), threads);
+  places = {};
   return Done{};
 }
 

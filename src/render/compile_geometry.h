@@ -28,7 +28,7 @@ struct CompiledGeometry {
   // Of groups: where the primitives of each end, kind by kind, and its tree; then where they stand.
   std::vector<PrimitiveCounts> group_ends;
   std::vector<Tree<Real>> group_trees;
-  std::vector<PlacedObject> places;  // an object is a group
+  std::vector<PlacedObject> places;  // until the trees are built; an object is a group
   std::vector<AffineMap> to_world;   // by instance
   InstanceForest<Real> forest;
 

@@ -22,6 +22,7 @@ meanwhile.
 from ._arrays import INSIDE_BIT, NO_PRIMITIVE, Candidates
 from ._geometry import Geometry
 from ._hits import AllHits, Hits, Nearest, Overlaps
+from ._instances import NO_INSTANCE, InstanceHits, Instances
 from ._scene import Camera, Scene, parse_scene, read_picture, read_scene, write_picture
 from ._sheaf import (
     Error,
@@ -36,6 +37,7 @@ from ._sheaf import (
 
 __all__ = [
     "INSIDE_BIT",
+    "NO_INSTANCE",
     "NO_PRIMITIVE",
     "AllHits",
     "Camera",
@@ -44,6 +46,8 @@ __all__ = [
     "FileError",
     "Geometry",
     "Hits",
+    "InstanceHits",
+    "Instances",
     "Nearest",
     "Overlaps",
     "Scene",
