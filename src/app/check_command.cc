@@ -12,6 +12,7 @@
 #include "src/app/suspect_scene.h"
 #include "src/formats/printable.h"
 #include "src/lab/find_thin_walls.h"
+#include "src/scene/placed_groups.h"
 
 namespace sheaf {
 namespace {
@@ -33,6 +34,8 @@ Json CheckJson(const std::string& path, const OpenedScene& opened) {
                {"disks", summary.disks},
                {"lights", opened.scene.lights.size()},
                {"cameras", opened.scene.cameras.size()},
+               {"groups", opened.scene.groups.size()},
+               {"instances", CountPlacedGroups(opened.scene)},
                {"skipped", Json::array()},
                {"warnings", opened.warnings}};
   for (const Feature& feature : summary.features) {
@@ -49,9 +52,10 @@ std::string CountText(const Json& json, const std::string& kind) {
 
 std::string CheckText(const Json& json) {
   std::vector<std::string> counts;
-  for (const char* kind : {"objects", "spheres", "triangles", "disks", "lights", "cameras"}) {
-    // Few scenes have any.
-    if (kind == std::string("disks") && json[kind] == 0) continue;
+  for (const std::string kind :
+       {"objects", "spheres", "triangles", "disks", "lights", "cameras", "groups", "instances"}) {
+    const bool is_usual = kind != "disks" && kind != "groups" && kind != "instances";
+    if (!is_usual && json[kind] == 0) continue;
     counts.push_back(CountText(json, kind));
   }
   std::string text =

@@ -19,6 +19,7 @@
 #include "src/core/build_info.h"
 #include "src/core/running_target.h"
 #include "src/formats/printable.h"
+#include "src/scene/placed_groups.h"
 #include "src/scene/projection.h"
 
 namespace sheaf {
@@ -88,7 +89,9 @@ Json SceneJson(const std::string& path, const Scene& scene) {
                  {"materials", scene.materials.size()},
                  {"lights", scene.lights.size()},
                  {"cameras", scene.cameras.size()},
-                 {"views", scene.views.size()}}},
+                 {"views", scene.views.size()},
+                 {"groups", scene.groups.size()},
+                 {"instances", CountPlacedGroups(scene)}}},
                {"bounds", nullptr},
                {"settings", SettingsJson(scene.settings)},
                {"cameras", Json::array()},

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "src/scene/placed_groups.h"
 #include "src/scene/projection.h"
 #include "src/scene/shapes.h"
 #include "src/scene/textures.h"
@@ -70,6 +71,7 @@ SceneSummary Summarize(const Scene& scene) {
       {"spheres", summary.spheres > 0},
       {"triangles", summary.triangles > 0},
       {"disks", summary.disks > 0},
+      {"instances", CountPlacedGroups(scene) > 0},
       {"checker textures", any_material([](const Material& m) {
          return std::holds_alternative<Checker>(m.base_colour);
        })},
