@@ -76,9 +76,9 @@ ClosedMesh Crumpled() {
   return {"crumpled", scene.vertices, scene.indices, AroundOrigin(0.25, 1.1)};
 }
 
-// Two cones, base to base, of triangles hundreds of times as long as wide.
+// Two cones, base to base, of triangles a hundred times as long as wide.
 ClosedMesh Needles() {
-  constexpr std::uint32_t kSides = 2000;
+  constexpr std::uint32_t kSides = 600;
   ClosedMesh mesh{"needles", {0, 0, 1, 0, 0, -1}, {}, AroundOrigin(0.5, 1.1)};
   for (std::uint32_t i = 0; i < kSides; ++i) {
     const double angle = 2 * 3.14159265358979 * i / kSides;

@@ -177,27 +177,42 @@ HWY_NOINLINE void CollectAlong(const TreeView<Real>& tree, const Packet<Real>& p
   std::uint32_t size = 0, child = 0;
   Distance last = Slabs::LastOf(list.last());
   for (;;) {
-    if (IsLeaf(child)) {
-      CollectLeaf(tree, child, ray, list);
-      if (list.is_done()) return;
-      last = Slabs::LastOf(list.last());
-    } else {
+    while (!IsLeaf(child)) {
       const TreeNode& node = tree.nodes[child];
       alignas(kAlignment) Distance enters[kTreeWidth];
       std::uint32_t met = 0;
       for (std::uint32_t i = 0; i < kTreeWidth; i += LaneCount(typename Slabs::D())) {
         met |= slabs.Meet(node, i, last, enters) << i;
       }
-      for (const std::uint32_t base = size; met != 0; met &= met - 1) {
+      if (met == 0) break;
+      const int first = std::countr_zero(met);
+      child = node.child[first];
+      // Goes on with the nearest child, and sorts the others, so that a full list ends the ray
+      // soon.
+      Distance nearest = enters[first];
+      const std::uint32_t base = size;
+      for (met &= met - 1; met != 0; met &= met - 1) {
         const int i = std::countr_zero(met);
+        Distance enter = enters[i];
+        std::uint32_t other = node.child[i];
+        if (enter < nearest) {
+          std::swap(enter, nearest);
+          std::swap(other, child);
+        }
         std::uint32_t at = size++;
-        for (; at != base && stack_enter[at - 1] < enters[i]; --at) {
+        for (; at != base && stack_enter[at - 1] < enter; --at) {
           stack_enter[at] = stack_enter[at - 1];
           stack_child[at] = stack_child[at - 1];
         }
-        stack_enter[at] = enters[i];
-        stack_child[at] = node.child[i];
+        stack_enter[at] = enter;
+        stack_child[at] = other;
+        FetchAhead(tree, other);
       }
+    }
+    if (IsLeaf(child)) {
+      CollectLeaf(tree, child, ray, list);
+      if (list.is_done()) return;
+      last = Slabs::LastOf(list.last());
     }
     do {
       if (size == 0) return;

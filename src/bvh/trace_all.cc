@@ -153,10 +153,11 @@ Status TraceAll(const GeometryOf<Real>& geometry, const RayArraysOf<Real>& rays,
     if (lists.listed) std::copy(lister.listed, lister.listed + n, lists.listed + first);
     if (lists.total) std::copy(lister.total, lister.total + n, lists.total + first);
     for (std::uint32_t i = 0; i < n; ++i) {
-      for (std::uint32_t k = 0; k < lists.capacity; ++k) {
-        writer.Write((first + i) * lists.capacity + k,
-                     k < lister.listed[i] ? lister.list(i)[k]
-                                          : ListedHit<Real>{lister.end(i), kNoPrimitive, 0, 0});
+      const std::size_t at = (first + i) * lists.capacity;
+      const std::uint32_t n_listed = lister.listed[i];
+      for (std::uint32_t k = 0; k < n_listed; ++k) writer.Write(at + k, lister.list(i)[k]);
+      if (n_listed < lists.capacity) {
+        writer.Write(at + n_listed, {lister.end(i), kNoPrimitive, 0, 0});
       }
     }
   });

@@ -27,14 +27,64 @@ struct Nearest {
 };
 
 // What follows takes primitives relative to the place, as differences in double: of floats they are
-// exact, but for those that are 2^29 times as far apart as they are large.
+// exact, but for those that are 2^29 times as far apart as they are large. A distance that is much
+// smaller than these numbers is a difference of rounded products, and is computed anew from
+// products that are not.
+inline constexpr double kSmallSquare = 0x1p-40;  // part of the square of a coordinate
+
+// a * b - c * d to 1.5 units in the last place: Kahan; see Jeannerod, Louvet, Muller, "Further
+// Analysis of Kahan's Algorithm" (Math. Comp. 82, 2013).
+inline double DifferenceOfProducts(double a, double b, double c, double d) {
+  const double cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+inline Wide3 AccurateCross(Wide3 a, Wide3 b) {
+  return {DifferenceOfProducts(a.y, b.z, a.z, b.y), DifferenceOfProducts(a.z, b.x, a.x, b.z),
+          DifferenceOfProducts(a.x, b.y, a.y, b.x)};
+}
+
+// A sum of products as in twice the digits, rounded: Dot2 of the paper at CompensatedSum.
+class AccurateDot {
+ public:
+  void Add(double a, double b) {
+    const double product = a * b;
+    sum_.Add(product);
+    rest_ += std::fma(a, b, -product);
+  }
+  double value() const { return sum_.sum + (sum_.error + rest_); }
+
+ private:
+  CompensatedSum<double> sum_{0};
+  double rest_ = 0;
+};
+
+// a . (b x c)
+inline double AccurateVolume(Wide3 a, Wide3 b, Wide3 c) {
+  AccurateDot volume;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    // Each component of the product in two parts.
+    const double high = b[i] * c[j] - b[j] * c[i];
+    AccurateDot low;
+    low.Add(b[i], c[j]);
+    low.Add(-b[j], c[i]);
+    low.Add(-high, 1);
+    volume.Add(a[k], high);
+    volume.Add(a[k], low.value());
+  }
+  return volume.value();
+}
 
 // The nearest point of the segment from a to b.
 inline Nearest NearestOfSegment(Wide3 a, Wide3 b) {
   const Wide3 along = b - a;
   const double length = Dot(along, along), way = -Dot(a, along);
   if (!(way > 0)) return Nearest(a);
-  return way >= length ? Nearest(b) : Nearest(a + along * (way / length));
+  if (way >= length) return Nearest(b);
+  const Nearest nearest(a + along * (way / length));
+  if (nearest.square >= kSmallSquare * Dot(a, a)) return nearest;
+  return Nearest(Cross(along, AccurateCross(a, along)) / length);
 }
 
 // The nearest point of an edge, or of the plane where the place is above the triangle. Whether it
@@ -48,20 +98,33 @@ inline Nearest NearestOfTriangle(Wide3 a, Wide3 b, Wide3 c) {
   const bool is_above =
       Dot(n, Cross(a, b - a)) >= 0 && Dot(n, Cross(b, c - b)) >= 0 && Dot(n, Cross(c, a - c)) >= 0;
   if (!is_above) return nearest;
-  const Nearest plane(n * (Dot(n, a) / Dot(n, n)));
+  Nearest plane(n * (Dot(n, a) / Dot(n, n)));
+  if (plane.square < kSmallSquare * Dot(a, a)) {
+    plane = Nearest(n * (AccurateVolume(a, b - a, c - a) / Dot(n, n)));
+  }
   return plane.square < nearest.square ? plane : nearest;
 }
 
 // Of the shell, from inside as from outside.
 inline Nearest NearestOfSphere(Wide3 center, double radius) {
-  const double distance = std::sqrt(Dot(center, center));
+  const double square = Dot(center, center), distance = std::sqrt(square);
   if (distance == 0) return Nearest({radius, 0, 0});  // all are as near
-  return Nearest(center * ((distance - radius) / distance));
+  const Nearest nearest(center * ((distance - radius) / distance));
+  if (nearest.square >= kSmallSquare * square) return nearest;
+  AccurateDot difference;
+  for (int k = 0; k < 3; ++k) difference.Add(center[k], center[k]);
+  difference.Add(-radius, radius);
+  return Nearest(center * (difference.value() / (distance + radius) / distance));
 }
 
 inline Nearest NearestOfDisk(Wide3 center, double radius, Wide3 normal) {
   const Wide3 n = NormalizeWide(normal);
-  const Wide3 foot = n * Dot(n, center);
+  Wide3 foot = n * Dot(n, center);
+  if (Dot(foot, foot) < kSmallSquare * Dot(center, center)) {
+    AccurateDot height;
+    for (int k = 0; k < 3; ++k) height.Add(normal[k], center[k]);
+    foot = normal * (height.value() / Dot(normal, normal));
+  }
   const Wide3 out = foot - center;
   const double square = Dot(out, out);
   if (square <= radius * radius) return Nearest(foot);

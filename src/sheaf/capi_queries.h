@@ -33,7 +33,7 @@ typedef struct sheaf_all_hits {
   size_t size;
   uint32_t capacity;  // hits of a ray that are listed, at most
   // The nearest hits of ray i, in order: elements [i * capacity, i * capacity + listed[i]) of the
-  // arrays. Those that are left of its `capacity` are written as of a ray that misses.
+  // arrays. The next one, where there is room, is as of a ray that misses.
   const sheaf_hits* hits;
   uint32_t* listed;  // an element a ray
   uint32_t* total;   // an element a ray: how many hits it has, listed or not

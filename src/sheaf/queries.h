@@ -50,8 +50,8 @@ template <typename Real>
 struct AllHitsOf {
   // Room for so many hits a ray; 0: none is listed.
   std::uint32_t capacity = 0;
-  // The nearest hits of ray i are elements [i * capacity, i * capacity + listed[i]), in order;
-  // those from there to (i + 1) * capacity are written as of a ray that misses.
+  // The nearest hits of ray i are elements [i * capacity, i * capacity + listed[i]), in order. The
+  // next one, where there is room, is as of a ray that misses; what follows is left alone.
   HitArraysOf<Real> hits = {};
   std::uint32_t* listed = nullptr;  // a ray: how many hits its list has, at most `capacity`
   // A ray: how many hits it has, listed or not. Null: nobody asks, which is faster where rays have
