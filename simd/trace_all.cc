@@ -1,5 +1,8 @@
 #include "simd/trace_all.h"
 
+#include <algorithm>
+#include <vector>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/trace_all.cc"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -165,16 +168,17 @@ HWY_INLINE void CollectLeaf(const TreeView<Real>& tree, std::uint32_t leaf, Repe
   }
 }
 
-// Every leaf that the ray of `lane` meets before the list ends, the nearest children first. Box
-// tests by `Slabs` must hold for the ray.
+// Every leaf of the subtree of `start` that the ray of `lane` meets before the list ends, the
+// nearest children first. Box tests by `Slabs` must hold for the ray.
 template <class Slabs, typename Real>
 HWY_NOINLINE void CollectAlong(const TreeView<Real>& tree, const Packet<Real>& packet,
-                               std::uint32_t lane, RepeatedRay<Real>& ray, HitList<Real>& list) {
+                               std::uint32_t lane, std::uint32_t start, RepeatedRay<Real>& ray,
+                               HitList<Real>& list) {
   using Distance = typename Slabs::Distance;
   const Slabs slabs(tree, packet, lane);
   Distance stack_enter[kTreeStackSize];
   std::uint32_t stack_child[kTreeStackSize];
-  std::uint32_t size = 0, child = 0;
+  std::uint32_t size = 0, child = start;
   Distance last = Slabs::LastOf(list.last());
   for (;;) {
     while (!IsLeaf(child)) {
@@ -233,6 +237,136 @@ HWY_NOINLINE void CollectEveryLeaf(const TreeView<Real>& tree, RepeatedRay<Real>
   }
 }
 
+// A packet whose lanes have lists, as the tests of a vector of rays see it. What they keep is each
+// lane's hit of one primitive, to be collected.
+template <typename Real>
+struct alignas(kAlignment) ListPacket {
+  static constexpr std::uint32_t kSize = kPacketSize<Real>;
+
+  Real t[kSize], u[kSize], v[kSize], det[kSize];
+  std::uint32_t id[kSize];
+  Packet<Real>& packet;
+  HitList<Real>* lists;  // a lane
+
+  HWY_INLINE ListPacket(Packet<Real>& rays, HitList<Real>* of_lanes)
+      : packet(rays), lists(of_lanes) {}
+
+  HWY_INLINE void Forget() {
+    const Lanes<Real> d;
+    hn::Store(hn::Load(d, packet.t_best), d, t);
+    StoreIds(d, hn::Set(IdLanes<Lanes<Real>>(), kNoPrimitive), id);
+  }
+  // A ray ends where its list does.
+  HWY_INLINE void End(std::uint32_t lane) {
+    packet.t_best[lane] = lists[lane].is_done() ? kDone<Real> : lists[lane].last();
+  }
+  HWY_INLINE void Collect(std::uint32_t hits, std::uint32_t primitive) {
+    for (; hits != 0; hits &= hits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(hits));
+      lists[lane].Add({t[lane], primitive, u[lane] / det[lane], v[lane] / det[lane]});
+      End(lane);
+    }
+  }
+
+  HWY_INLINE const Real* origin(int k) const { return packet.origin[k]; }
+  HWY_INLINE const Real* direction(int k) const { return packet.direction[k]; }
+  HWY_INLINE const Real* shear_x() const { return packet.shear_x; }
+  HWY_INLINE const Real* shear_y() const { return packet.shear_y; }
+  HWY_INLINE HitSlots<Real> slots() const {
+    auto& self = const_cast<ListPacket&>(*this);
+    return {self.t, self.u, self.v, self.det, self.id};
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<D> TMin(D d) const {
+    return hn::Load(d, packet.t_min);
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<IdLanes<D>> Sources(D d) const {
+    return LoadIds(d, packet.source);
+  }
+};
+
+// Triangles of the leaf whose bits are set in `wanted`, against the rays of `lanes`.
+template <typename Real>
+HWY_NOINLINE void CollectTogether(const TreeView<Real>& tree, std::uint32_t leaf,
+                                  std::uint32_t wanted, hn::Mask<Lanes<Real>> lanes,
+                                  ListPacket<Real>& rays) {
+  const Lanes<Real> d;
+  const IdLanes<Lanes<Real>> di;
+  const std::uint32_t n = LeafCount(leaf);
+  const Real* block = BlockOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const std::uint32_t* ids = IdsOf<PrimitiveKind::kTriangle>(tree, leaf);
+  const auto axes = LoadIds(d, rays.packet.axis);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto same = hn::Eq(axes, hn::Set(di, static_cast<hn::TFromD<decltype(di)>>(axis)));
+    const auto along = hn::And(lanes, hn::RebindMask(d, same));
+    if (hn::AllFalse(d, along)) continue;
+    const int kx = (axis + 1) % 3, ky = (axis + 2) % 3;
+    for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+      const auto relative = [&](int vertex, int k) SHEAF_LAMBDA {
+        return hn::Sub(hn::Set(d, block[(3 * vertex + k) * n + i]), hn::Load(d, rays.origin(k)));
+      };
+      rays.Forget();
+      const auto hit = TriangleAgainstRays<Query::kClosest>(
+          d, rays, axis, relative(0, kx), relative(0, ky), relative(0, axis), relative(1, kx),
+          relative(1, ky), relative(1, axis), relative(2, kx), relative(2, ky), relative(2, axis),
+          BlockColumns<Real>{block + i, n, 0}, ids[i], along);
+      rays.Collect(MaskBits(d, hit), ids[i]);
+    }
+  }
+}
+
+// The rays of `lanes`, all of one octant: together where most of them go, else one by one.
+template <typename Real>
+HWY_NOINLINE void CollectBeam(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                              std::uint32_t lanes, ListPacket<Real>& rays) {
+  const Lanes<Real> d;
+  Beam<Real> beam;
+  MakeBeam(rays.packet, lanes, beam);
+  UpdateRayEnds(rays.packet, lanes, beam);
+  TraceBeam(tree, stack, beam, 0, [&](std::uint32_t child, auto met) SHEAF_LAMBDA {
+    std::uint32_t bits = MaskBits(d, met);
+    const bool are_few = static_cast<std::uint32_t>(std::popcount(bits)) <= FewRays<Real>();
+    if (!are_few && !IsLeaf(child)) return Visit::kDescend;
+    if (!are_few && HasTriangles(child)) {
+      CollectTogether(tree, child, CullLeaf(tree, child, beam), met, rays);
+    } else {
+      for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+        RepeatedRay<Real> ray(rays.packet, lane);
+        CollectAlong<LaneSlabs<Real>>(tree, rays.packet, lane, child, ray, rays.lists[lane]);
+        rays.End(lane);
+      }
+    }
+    UpdateRayEnds(rays.packet, lanes, beam);
+    return Visit::kDone;
+  });
+}
+
+// Octants of more than half a packet go together. Returns the bits of the lanes that are left.
+template <typename Real>
+HWY_INLINE std::uint32_t CollectCompany(const TreeView<Real>& tree, BeamStack<Real>& stack,
+                                        std::uint32_t open, ListPacket<Real>& rays) {
+  const std::uint32_t lane_count = LaneCount(Lanes<Real>());
+  std::uint32_t left = open & rays.packet.without_boxes, lanes = open & ~left;
+  while (lanes != 0) {
+    const std::uint32_t octant = rays.packet.octant[std::countr_zero(lanes)];
+    std::uint32_t alike = 0;
+    for (std::uint32_t lane = 0; lane < lane_count; ++lane) {
+      alike |= static_cast<std::uint32_t>(rays.packet.octant[lane] == octant) << lane;
+    }
+    alike &= lanes;
+    lanes &= ~alike;
+    if (static_cast<std::uint32_t>(std::popcount(alike)) <= lane_count / 2) {
+      left |= alike;
+    } else {
+      CollectBeam(tree, stack, alike, rays);
+    }
+  }
+  return left;
+}
+
 template <typename Real>
 HWY_INLINE void CollectLane(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lane,
                             std::uint32_t fit_wide, const ListedHit<Real>* after,
@@ -242,9 +376,9 @@ HWY_INLINE void CollectLane(const TreeView<Real>& tree, Packet<Real>& packet, st
   // primitives keep the ray's own interval.
   if (after && after->t > packet.t_min[lane]) packet.t_min[lane] = after->t;
   if ((packet.without_boxes >> lane & 1) == 0) {
-    CollectAlong<LaneSlabs<Real>>(tree, packet, lane, ray, list);
+    CollectAlong<LaneSlabs<Real>>(tree, packet, lane, 0, ray, list);
   } else if ((fit_wide >> lane & 1) != 0) {
-    CollectAlong<WideSlabs<Real>>(tree, packet, lane, ray, list);
+    CollectAlong<WideSlabs<Real>>(tree, packet, lane, 0, ray, list);
   } else {
     CollectEveryLeaf(tree, ray, list);
   }
@@ -253,26 +387,38 @@ HWY_INLINE void CollectLane(const TreeView<Real>& tree, Packet<Real>& packet, st
 template <typename Real>
 void TraceAllLanes(const TreeView<Real>& tree, const RayView<Real>& rays,
                    const RayIntervals<Real>& intervals, std::uint32_t count,
-                   const HitRuleView& rules, const HitListOutput<Real>& lists) {
+                   const HitRuleView& rules, const HitListOutput<Real>& output) {
   Packet<Real> packet;
+  BeamStack<Real> stack;
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  const bool is_asked = tree.node_count > 0 && (output.capacity > 0 || output.total);
+  std::vector<HitList<Real>> lists;
+  lists.reserve(lanes);
   for (std::uint32_t begin = 0; begin < count; begin += lanes) {
     LoadPacket(rays, intervals, begin, count, packet);
     PrepareLeafTerms(tree, packet);
     if (!HasScreened(tree)) hn::Store(hn::Zero(Lanes<Real>()), Lanes<Real>(), packet.screen);
     PrepareBoxes(tree, packet);
-    const std::uint32_t open = tree.node_count == 0 ? 0 : OpenLanes(packet);
-    const std::uint32_t fit_wide = FitWideBoxes(packet, packet.without_boxes);
-    for (std::uint32_t lane = 0; lane < std::min(lanes, count - begin); ++lane) {
-      const std::uint32_t i = begin + lane;
-      HitList<Real> list(lists, rules, i, packet.t_best[lane]);
-      const ListedHit<Real>* after = lists.after ? lists.after + i : nullptr;
-      const bool is_over = after && after->t > packet.t_best[lane];
-      if ((open >> lane & 1) != 0 && !is_over && (lists.capacity > 0 || lists.total)) {
-        CollectLane(tree, packet, lane, fit_wide, after, list);
-      }
-      list.Finish();
+    const std::uint32_t n = std::min(lanes, count - begin);
+    std::uint32_t open = is_asked ? OpenLanes(packet) : 0;
+    lists.clear();
+    for (std::uint32_t lane = 0; lane < n; ++lane) {
+      lists.emplace_back(output, rules, begin + lane, packet.t_best[lane]);
+      const bool is_over = output.after && output.after[begin + lane].t > packet.t_best[lane];
+      if (is_over) open &= ~(1u << lane);
     }
+    // A list that begins somewhere is for boxes another interval than for primitives: lane by lane.
+    if (!output.after) {
+      ListPacket<Real> together(packet, lists.data());
+      open = CollectCompany(tree, stack, open, together);
+    }
+    const std::uint32_t fit_wide = FitWideBoxes(packet, packet.without_boxes);
+    for (; open != 0; open &= open - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+      const ListedHit<Real>* after = output.after ? output.after + begin + lane : nullptr;
+      CollectLane(tree, packet, lane, fit_wide, after, lists[lane]);
+    }
+    for (const HitList<Real>& list : lists) list.Finish();
   }
 }
 

@@ -130,6 +130,25 @@ TEST_CASE_TEMPLATE("lists are those of every primitive in turn", Real, float, do
   }
 }
 
+TEST_CASE_TEMPLATE("lists of rays that go together are no others", Real, float, double) {
+  Random random(12);
+  Scene scene = RandomScene(random, 400);
+  AddDisks(random, scene);
+  std::vector<scalar::Ray<Real>> rays;
+  for (int i = 0; i < 1200; ++i) {
+    scalar::Ray<Real> ray;
+    ray.origin = {-9, Real(i % 3), Real(0.5)};
+    ray.direction = {1, static_cast<Real>(i % 37) / 100, static_cast<Real>(i / 37) / 80};
+    if (i % 5 == 0) ray.t_max = static_cast<Real>(Uniform(random, 0, 12));
+    if (i % 7 == 0) ray.source = static_cast<std::uint32_t>(random() % 440);
+    rays.push_back(ray);
+  }
+  for (const std::uint32_t capacity : {0, 1, 2, 64}) {
+    CheckLists<Real>(scene, rays, {capacity, {}, {}, true});
+    if (capacity > 0) CheckLists<Real>(scene, rays, {capacity, {}, {}, false});
+  }
+}
+
 TEST_CASE_TEMPLATE("masks and exclusions rule hits out, and a list goes on after a hit", Real,
                    float, double) {
   Random random(7);
