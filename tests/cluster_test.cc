@@ -96,9 +96,9 @@ TEST_CASE("areas cover every pixel once, in tiles, large ones first") {
       CHECK(pixels == std::int64_t{picture.width()} * picture.height());
     }
   }
-  // A sixteenth of a rank's share, and at the end four tiles a thread.
-  AreaPlan plan({0, 0, 3200, 3200}, 32, 2, 1 << 24);
-  CHECK(plan.Next(1)->height() == 96);
+  // The stated part of a rank's share, and at the end four tiles a thread.
+  AreaPlan plan({0, 0, 3200, 3200}, 32, 4, 1 << 24);
+  CHECK(plan.Next(1)->width() == 100 * 100 / (4 * kAreaShare) * 32);
   AreaPlan small({0, 0, 3200, 32}, 32, 1, 1 << 24);
   CHECK(small.Next(3)->width() == 12 * 32);
 }

@@ -9,17 +9,19 @@ int CeilDivide(int a, int b) { return (a + b - 1) / b; }
 
 }  // namespace
 
-AreaPlan::AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels)
+AreaPlan::AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels,
+                   int share)
     : pixels_(pixels),
       tile_size_(tile_size),
       ranks_(ranks),
       columns_(CeilDivide(pixels.width(), tile_size)),
+      share_(share),
       most_tiles_(std::max<std::int64_t>(most_pixels / (std::int64_t{tile_size} * tile_size), 1)),
       end_(std::int64_t{columns_} * CeilDivide(pixels.height(), tile_size)) {}
 
 std::optional<PixelRect> AreaPlan::Next(int threads) {
   if (next_ == end_) return std::nullopt;
-  const std::int64_t share = (end_ - next_) / (std::int64_t{kAreaShare} * ranks_);
+  const std::int64_t share = (end_ - next_) / (std::int64_t{share_} * ranks_);
   const std::int64_t least = std::int64_t{kTilesPerThread} * threads;
   const std::int64_t tiles = std::min(std::max(share, least), most_tiles_);
   const std::int64_t row = next_ / columns_, column = next_ % columns_;

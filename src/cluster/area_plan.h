@@ -9,9 +9,10 @@
 
 namespace sheaf {
 
-// An area is 1 / kAreaShare of a rank's part of what is left: even where its pixels take sixteen
-// times as long as others it ends before the rest does.
-inline constexpr int kAreaShare = 16;
+// An area is 1 / kAreaShare of a rank's part of what is left: even where its pixels take many times
+// as long as others it ends before the rest does, and few rows wait for it. A message costs little
+// (bench/cluster_model.cc).
+inline constexpr int kAreaShare = 64;
 
 // A thread of the rank shall have so many tiles of an area.
 inline constexpr int kTilesPerThread = 4;
@@ -21,14 +22,15 @@ inline constexpr int kTilesPerThread = 4;
 class AreaPlan {
  public:
   // `pixels` of the picture, for so many ranks. No area has more than `most_pixels`, but one tile.
-  AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels);
+  AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels,
+           int share = kAreaShare);
 
   // The next area, for a rank with so many threads; nothing is left: nothing.
   std::optional<PixelRect> Next(int threads);
 
  private:
   const PixelRect pixels_;
-  const int tile_size_, ranks_, columns_;
+  const int tile_size_, ranks_, columns_, share_;
   const std::int64_t most_tiles_;
   std::int64_t next_ = 0, end_;  // tiles, row by row
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/cluster/wire.h"
+#include "src/core/parallel.h"
 #include "src/core/running_target.h"
 #include "src/render/check_options.h"
 
@@ -16,14 +17,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Areas that a rank has at a time: one in work, one to go on with.
-constexpr int kAreasAtOnce = 2;
-
-// Of rows that are rendered and not written: some wait for slower ones above them.
-constexpr std::int64_t kWindowBytes = std::int64_t{256} << 20;
-
-// So that a message takes few milliseconds.
 constexpr std::int64_t kAreaBytes = std::int64_t{16} << 20;
+constexpr std::int64_t kLeastWindowBytes = std::int64_t{256} << 20;
+// What all ranks have in hand is this part of the window, so that they go on while a slow area
+// holds up the rows below it.
+constexpr std::int64_t kWindowDepth = 4;
+constexpr std::int64_t kMostWindowBytes = std::int64_t{2} << 30;
 
 std::int64_t PixelCount(const PixelRect& area) {
   return std::int64_t{area.width()} * area.height();
@@ -37,9 +36,13 @@ std::int64_t PixelBytes(const Layers& layers) {
   return floats * static_cast<std::int64_t>(sizeof(float));
 }
 
-std::int64_t MostPixels(const RenderOptions& options, int ranks) {
-  const std::int64_t bytes = std::min(kAreaBytes, kWindowBytes / (kAreasAtOnce * ranks));
-  return bytes / PixelBytes(options.layers);
+LeadLimits PixelLimits(const RenderOptions& options, int ranks) {
+  const std::int64_t pixel = PixelBytes(options.layers);
+  const std::int64_t tile = pixel * options.tile_size * options.tile_size;
+  // The other ranks are not known yet; they are as rank 0 where it matters.
+  const LeadLimits limits =
+      LimitsFor(ranks, ThreadCount(options.threads), static_cast<double>(tile));
+  return {limits.window / pixel, limits.area / pixel};
 }
 
 double SecondsSince(Clock::time_point start) {
@@ -48,14 +51,23 @@ double SecondsSince(Clock::time_point start) {
 
 }  // namespace
 
+LeadLimits LimitsFor(int ranks, int threads, double tile_bytes) {
+  const auto all = kWindowDepth * kAreasAtOnce * ranks;
+  const double small = tile_bytes * kTilesPerThread * threads * static_cast<double>(all);
+  const double window = std::clamp(small, static_cast<double>(kLeastWindowBytes),
+                                   static_cast<double>(kMostWindowBytes));
+  const auto bytes = static_cast<std::int64_t>(window);
+  return {bytes, std::min(kAreaBytes, bytes / all)};
+}
+
 FrameLead::FrameLead(const Scene& scene, const Camera& camera, const RenderOptions& options,
                      const RowSink& sink, Ranks& ranks, RenderProgress& progress)
     : options_(options),
       sink_(sink),
       ranks_(ranks),
       progress_(progress),
-      window_pixels_(kWindowBytes / PixelBytes(options.layers)),
-      plan_(AreaOf(options), options.tile_size, ranks.count(), MostPixels(options, ranks.count())),
+      limits_(PixelLimits(options, ranks.count())),
+      plan_(AreaOf(options), options.tile_size, ranks.count(), limits_.area),
       strips_(AreaOf(options)),
       has_ended_(static_cast<std::size_t>(ranks.count()), false),
       records_(static_cast<std::size_t>(ranks.count())),
@@ -171,7 +183,7 @@ void FrameLead::FinishRank(int rank, RenderStats stats) {
 }
 
 bool FrameLead::HandOut() {
-  if (hungry_.empty() || out_pixels_ >= window_pixels_) return false;
+  if (hungry_.empty() || out_pixels_ >= limits_.window) return false;
   const int rank = hungry_.front();
   hungry_.pop_front();
   const auto at = static_cast<std::size_t>(rank);

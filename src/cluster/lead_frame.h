@@ -21,6 +21,19 @@
 
 namespace sheaf {
 
+// Areas that a rank has at a time: one in work, one to go on with.
+inline constexpr int kAreasAtOnce = 2;
+
+// How much is under way at a time, in bytes of pixels.
+struct LeadLimits {
+  std::int64_t window;  // rendered or handed out, and not written: some wait for slower rows above
+  std::int64_t area;    // of one area: a message takes few milliseconds
+};
+
+// For so many ranks with so many threads each: 256 MiB, and what small areas for all of them are up
+// to 2 GiB.
+LeadLimits LimitsFor(int ranks, int threads, double tile_bytes);
+
 class FrameLead {
  public:
   // `options` are checked. All arguments outlive it.
@@ -53,7 +66,7 @@ class FrameLead {
   const RowSink& sink_;
   Ranks& ranks_;
   RenderProgress& progress_;
-  const std::int64_t window_pixels_;
+  const LeadLimits limits_;  // in pixels
   AreaPlan plan_;
   Strips strips_;
   std::int64_t out_pixels_ = 0;  // handed out and not written

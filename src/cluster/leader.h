@@ -27,10 +27,9 @@ class Leader {
   Leader& operator=(const Leader&) = delete;
   ~Leader();  // Stop, if nobody has called it
 
-  // As sheaf::RenderRows, on all ranks: the sink gets the rows from the top, at most so many at a
-  // time as fit into 256 MiB are rendered and not written. `order` tells the others what `scene`
-  // and `camera` are. An error of a rank is that of the picture and names the rank; where its
-  // memory has run out std::bad_alloc is thrown.
+  // As sheaf::RenderRows, on all ranks; LimitsFor says what is held of the picture. `order` tells
+  // the others what `scene` and `camera` are. An error of a rank is that of the picture and names
+  // the rank; where its memory has run out std::bad_alloc is thrown.
   Status RenderRows(const Scene& scene, const Camera& camera, const FrameOrder& order,
                     const RenderOptions& options, const RowSink& sink, RenderStats* stats,
                     RenderProgress* progress);

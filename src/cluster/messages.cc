@@ -113,7 +113,7 @@ RankError UnpackError(std::string_view bytes) {
 
 void Patience::Rest() {
   constexpr int kQuick = 20;
-  const auto time = std::chrono::microseconds(rests_ < kQuick ? 20 : 500);
+  const auto time = std::chrono::microseconds(rests_ < kQuick ? 50 : 2000);
   rests_ = std::min(rests_ + 1, kQuick);
   std::this_thread::sleep_for(time);
 }

@@ -62,7 +62,7 @@ FinishedArea UnpackArea(std::string_view bytes);
 RenderStats UnpackStats(std::string_view bytes);
 RankError UnpackError(std::string_view bytes);
 
-// Waits between looks at the messages: the longer the less happens, at most half a millisecond, so
+// Waits between looks at the messages: the longer the less happens, at most two milliseconds, so
 // that waiting takes no core from who renders.
 class Patience {
  public:
