@@ -8,9 +8,9 @@
 
 namespace sheaf::python {
 
-void AddGeometry(pybind11::module_& module);  // geometries of floats and of doubles
+void AddGeometry(pybind11::module_& module);   // geometries of floats and of doubles
 void AddInstances(pybind11::module_& module);  // the same in many places
-void AddScenes(pybind11::module_& module);    // scenes, frames and pictures
+void AddScenes(pybind11::module_& module);     // scenes, frames and pictures
 
 }  // namespace sheaf::python
 
