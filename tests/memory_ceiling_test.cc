@@ -89,6 +89,13 @@ TEST_CASE("headers of OpenEXR that claim gigabytes") {
   attribute.more = std::string("owner\0string\0", 13) + Little32(0xfffffff0) + "me";
   CheckRefused(attribute.Bytes(), ".exr", "claims -16 bytes");
 
+  // Sizes that the library does not look at: it would take the rest for other attributes.
+  Exr beyond;
+  beyond.more = Attribute("owner", "float", std::string(40, 'a'));
+  CheckRefused(beyond.Bytes(), ".exr", "\"owner\" is malformed");
+  beyond.more = Attribute("more", "chlist", std::string("R\0", 2) + std::string(30, 'a'));
+  CheckRefused(beyond.Bytes(), ".exr", "\"more\" is malformed");
+
   Exr preview;
   preview.more = Attribute("preview", "preview", Little32(20000) + Little32(20000) + "abcd");
   CheckRefused(preview.Bytes(), ".exr", "preview");

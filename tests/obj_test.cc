@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model_files.h"
+#include "src/formats/write_scene_json.h"
 
 namespace sheaf {
 namespace {
@@ -243,6 +244,31 @@ TEST_CASE("OBJ: concave polygons keep their area, in any position") {
       sum += glm::length(glm::cross(q - p, r - p));
     }
     CHECK(sum == doctest::Approx(twice).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("colours of vertices can be written as scene JSON, whatever a model says") {
+  const Folder folder;
+  const std::string colours[] = {"2e9 0 0", "-1 0 0", "1e6 1 1"};
+  for (const std::string& colour : colours) {
+    CAPTURE(colour);
+    const std::string v = " " + colour + "\n";
+    const std::string paths[] = {
+        folder.Write("a.obj", "v 0 0 0" + v + "v 1 0 0" + v + "v 0 1 0" + v + "f 1 2 3\n"),
+        folder.Write("a.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                     "property float z\nproperty float red\nproperty float green\n"
+                     "property float blue\nelement face 1\nproperty list uchar int vertex_indices\n"
+                     "end_header\n0 0 0" +
+                         v + "1 0 0" + v + "0 1 0" + v + "3 0 1 2\n")};
+    for (const std::string& path : paths) {
+      CAPTURE(path);
+      const auto read = ReadScene(path);
+      REQUIRE(read.ok());
+      const Result<Scene> again = ParseSceneJson(SceneJsonText(read.value().scene), "again.json");
+      CAPTURE((again ? "" : again.error().message));
+      CHECK(again.ok());
+    }
   }
 }
 

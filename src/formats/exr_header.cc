@@ -8,6 +8,9 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
@@ -26,11 +29,35 @@ struct Claims {
 // The lines that a compression packs together, by its number in the file.
 constexpr std::array<int, 10> kPackedLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
+// The library reads an attribute of these types without regard to the size that the file states,
+// and takes what follows for the next one.
+constexpr std::pair<std::string_view, int> kTypeSizes[] = {
+    {"box2f", 16},         {"box2i", 16},    {"chromaticities", 32},
+    {"compression", 1},    {"double", 8},    {"envmap", 1},
+    {"deepImageState", 1}, {"float", 4},     {"int", 4},
+    {"keycode", 28},       {"lineOrder", 1}, {"m33f", 36},
+    {"m33d", 72},          {"m44f", 64},     {"m44d", 128},
+    {"rational", 8},       {"tiledesc", 9},  {"timecode", 8},
+    {"v2d", 16},           {"v2f", 8},       {"v2i", 8},
+    {"v3d", 24},           {"v3f", 12},      {"v3i", 12}};
+
 std::int64_t Signed32(const unsigned char* at) {
   const auto bits = static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8 |
                     static_cast<std::uint32_t>(at[2]) << 16 |
                     static_cast<std::uint32_t>(at[3]) << 24;
   return static_cast<std::int32_t>(bits);
+}
+
+// How many channels a list has that ends where its attribute does; nothing where it does not.
+std::optional<std::int64_t> CountChannels(std::string_view list) {
+  constexpr std::size_t kAfterName = 16;
+  for (std::int64_t count = 0;; ++count) {
+    const std::size_t end = list.find('\0');
+    if (end == std::string_view::npos) return std::nullopt;
+    if (end == 0) return list.size() == 1 ? std::optional(count) : std::nullopt;
+    if (list.size() - end - 1 < kAfterName) return std::nullopt;
+    list.remove_prefix(end + 1 + kAfterName);
+  }
 }
 
 class HeaderScan {
@@ -87,14 +114,26 @@ class HeaderScan {
       return InputError(path_, fmt::format("its attribute \"{}\" claims {} bytes; the file has {}",
                                            Printable(name, 40), size, bytes_));
     }
+    const auto wrong = [&] {
+      return InputError(path_,
+                        fmt::format("its attribute \"{}\" is malformed", Printable(name, 40)));
+    };
+    for (const auto& [known, bytes] : kTypeSizes) {
+      if (type == known && size != bytes) return wrong();
+    }
+    if (type == "chlist") {
+      std::string list(static_cast<std::size_t>(size), '\0');
+      if (!Take(reinterpret_cast<unsigned char*>(list.data()), list.size())) return Done{};
+      const std::optional<std::int64_t> channels = CountChannels(list);
+      if (!channels) return wrong();
+      claims->channels = std::max(claims->channels, *channels);
+      return Done{};
+    }
     std::array<unsigned char, 16> data = {};
     const auto kept = std::min(static_cast<std::size_t>(size), data.size());
     if (!Take(data.data(), kept)) return Done{};
     const std::uint64_t rest = static_cast<std::uint64_t>(size) - kept;
-    if (name == "channels") {
-      // Each has a name, its zero and 16 bytes.
-      claims->channels = size / 18;
-    } else if (name == "dataWindow" && size == 16) {
+    if (name == "dataWindow" && size == 16) {
       claims->width = Signed32(&data[8]) - Signed32(&data[0]) + 1;
       claims->height = Signed32(&data[12]) - Signed32(&data[4]) + 1;
     } else if (name == "tiles" && size >= 8) {
@@ -102,10 +141,10 @@ class HeaderScan {
       claims->tile_height = Signed32(&data[4]);
     } else if (name == "compression" && data[0] < kPackedLines.size()) {
       claims->lines = kPackedLines[data[0]];
-    } else if (type == "preview" && size >= 8) {
+    } else if (type == "preview") {
       const std::int64_t width = Signed32(&data[0]), height = Signed32(&data[4]);
       const bool fits = width >= 0 && height >= 0 && width <= size && height <= size &&
-                        width * height * 4 <= size;
+                        width * height * 4 == size - 8;
       if (!fits) return InputError(path_, "its preview claims more pixels than it has");
     } else if (name == "type" && kept >= 4 && std::equal(data.begin(), data.begin() + 4, "deep")) {
       return InputError(path_, "deep data, which are not read");

@@ -15,6 +15,7 @@
 #include "src/formats/gltf_skins.h"
 #include "src/formats/gltf_textures.h"
 #include "src/formats/gltf_validate.h"
+#include "src/formats/scene_mesh.h"
 
 namespace sheaf {
 namespace {
@@ -203,7 +204,7 @@ bool GltfMeshes::ReadColours(const tinygltf::Primitive& primitive, const std::st
   if (!ReadAttribute(document_, primitive, place, {"COLOR_0", 3, 4}, count, &mesh->colours)) {
     return false;
   }
-  for (glm::vec3& colour : mesh->colours) colour = glm::max(colour, glm::vec3(0));
+  for (glm::vec3& colour : mesh->colours) colour = VertexColour(colour);
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "src/formats/printable.h"
+#include "src/formats/scene_mesh.h"
 #include "src/formats/text_scanner.h"
 
 namespace sheaf {
@@ -101,7 +102,7 @@ class StatementReader {
     if (has_colour || !out_.colours.empty()) {
       out_.colours.resize(out_.positions.size(), glm::vec3(1));
       const glm::vec3 colour(numbers_[3], numbers_[4], numbers_[5]);
-      out_.colours.push_back(has_colour ? glm::max(colour, glm::vec3(0)) : glm::vec3(1));
+      out_.colours.push_back(has_colour ? VertexColour(colour) : glm::vec3(1));
     }
     out_.positions.emplace_back(numbers_[0], numbers_[1], numbers_[2]);
   }

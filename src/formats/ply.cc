@@ -18,6 +18,7 @@
 #include "src/formats/printable.h"
 #include "src/formats/read_file.h"
 #include "src/formats/read_scene.h"
+#include "src/formats/scene_mesh.h"
 #include "src/formats/split_vertices.h"
 #include "src/formats/text_lines.h"
 #include "src/formats/triangulate.h"
@@ -164,7 +165,7 @@ class ElementReader {
   }
 
   static glm::vec3 ColourIn(const Slots& slots) {
-    return glm::max(glm::vec3(slots[kRed], slots[kGreen], slots[kBlue]), glm::vec3(0));
+    return VertexColour(glm::vec3(slots[kRed], slots[kGreen], slots[kBlue]));
   }
 
   // ---- Vertices ----
