@@ -3,7 +3,7 @@
 //   Result<Instances> instances = Instances::Build(geometries, places);
 //   TraceClosest(instances.value(), rays, count, hits).value();
 //
-// What a geometry holds is there once, however often it stands somewhere; a place takes some 250
+// What a geometry holds is there once, however often it stands somewhere; a place takes some 150
 // bytes. A ray is mapped into a geometry and traced there in strict arithmetic, so that hits are
 // the same bits on every processor, and neither cracks nor gaps open between a geometry's
 // triangles. Numbers, memory and threads are as in <sheaf/geometry.h>.
