@@ -89,10 +89,10 @@ void TileRenderer<Real>::FollowRays(std::uint32_t pixels) {
     rays_.diffuse += queues_[2].count();
     if (depth > frame_.max_depth) rays_.beyond_depth += spawned;  // these count, and are black
     if (spawned == 0 || depth > frame_.max_depth) {
-      if (!held_.TakeLast(&depth, queues_)) return;
+      if (!held_.TakeLast(&depth, queues_.data())) return;
       spawned = most + 1;  // they may have to be divided again
     }
-    if (spawned > most) spawned = held_.Divide(depth, most, queues_);
+    if (spawned > most) spawned = held_.Divide(depth, most, queues_.data());
     for (RayQueue<Real>& queue : next_queues_) queue.Reset(spawned);
     ShadeDepth(depth, most);
   }
@@ -296,7 +296,7 @@ std::size_t TileRenderer<Real>::buffer_bytes() const {
   const auto add = [&sum](const auto&... buffers) { ((sum += buffers.bytes()), ...); };
   add(binner_, instanced_, samples_, lights_, order_, sample_, means_, converging_, first_hits_,
       edges_, primary_);
-  for (const auto& queues : {std::span(queues_), std::span(next_queues_)}) {
+  for (const auto& queues : {queues_, next_queues_}) {
     for (const RayQueue<Real>& queue : queues) add(queue);
   }
   add(held_, parent_order_);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "sheaf/render.h"
 #include "simd/kernels.h"
@@ -90,7 +91,8 @@ class TileRenderer : public TileWorker {
 
   PrimaryRays<Real> primary_;
   // The rays of this depth and of the next, by kind.
-  RayQueue<Real> queues_[kChildKinds], next_queues_[kChildKinds];
+  RayQueue<Real> queue_sets_[2][kChildKinds];
+  std::span<RayQueue<Real>, kChildKinds> queues_{queue_sets_[0]}, next_queues_{queue_sets_[1]};
   HeldRays<Real> held_;
   ParentOrder<Real> parent_order_;
 

@@ -49,8 +49,13 @@ class Stream {
     return sum;
   }
 
+  Fields<Real, ConstField> view() const {
+    Fields<Real, ConstField> view;
+    ForEachField(view, arrays_, [](auto& to, auto& from) { to = from.data(); });
+    return view;
+  }
   // Both: the elements from `first` on; `first` + count stays within the n of Allocate or Reserve.
-  Fields<Real, ConstField> view(std::uint32_t first = 0) const {
+  Fields<Real, ConstField> view(std::uint32_t first) const {
     Fields<Real, ConstField> view;
     ForEachField(view, arrays_,
                  [&](auto& to, auto& from) { to = from.data() ? from.data() + first : nullptr; });
