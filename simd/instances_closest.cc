@@ -18,11 +18,7 @@ class NearestInInstances {
                      const InstanceHits<Real>& hits)
       : tree_(tree), trace_(trace), hits_(hits) {}
 
-  HWY_INLINE Real LastT(std::uint32_t position) const {
-    // An infinite interval admits every finite t; NaN, none.
-    const Real t = hits_.t[position];
-    return t > kDefaultTMax<Real> ? kDefaultTMax<Real> : t >= 0 ? t : kDone<Real>;
-  }
+  HWY_INLINE Real LastT(std::uint32_t position) const { return EndOf(hits_.t[position]); }
 
   bool Trace(std::uint32_t instance, const MappedRays<Real>& mapped, std::uint32_t count,
              RayGroup<Real>& group) {

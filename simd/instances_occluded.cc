@@ -20,8 +20,7 @@ class AnyInInstances {
 
   HWY_INLINE Real LastT(std::uint32_t position) const {
     if (occluded_[position] != 0) return kDone<Real>;
-    const Real t = intervals_.t_max ? intervals_.t_max[position] : intervals_.all_t_max;
-    return t > kDefaultTMax<Real> ? kDefaultTMax<Real> : t >= 0 ? t : kDone<Real>;
+    return EndOf(intervals_.t_max ? intervals_.t_max[position] : intervals_.all_t_max);
   }
 
   bool Trace(std::uint32_t instance, const MappedRays<Real>& mapped, std::uint32_t count,

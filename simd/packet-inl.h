@@ -182,7 +182,36 @@ HWY_INLINE hn::Vec<IdLanes<D>> Octants(D /*d*/, V dx, V dy, V dz) {
   return hn::Or(sign(dx), hn::Or(hn::ShiftLeft<1>(sign(dy)), hn::ShiftLeft<2>(sign(dz))));
 }
 
-// FitsBoxes and SlabsOf of src/scalar/ray_slabs.h.
+// FitsBoxes of src/scalar/ray_slabs.h: `size` and `furthest` are the largest components of
+// directions and origins. NaN passes nothing.
+template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
+HWY_INLINE hn::Mask<D> FitsBoxes(D d, V size, V furthest, V t_min) {
+  const auto fits = hn::And(hn::Ge(size, hn::Set(d, Real(kMinBoxDirection))),
+                            hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
+  return hn::And(hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate)))),
+                 hn::Ge(t_min, hn::Zero(d)));
+}
+
+// Along one axis, SlabsOf of src/scalar/ray_slabs.h of a vector of rays. `give`: how far an origin
+// at 0 gives way. Returns how far each does, along its direction.
+template <typename Real, class V = hn::Vec<Lanes<Real>>>
+HWY_INLINE V StoreSlabs(V o, V dir, V size, V reach, V give, Real* scale, Real* enter,
+                        Real* leave) {
+  const Lanes<Real> d;
+  const V least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));
+  const V steep_slack = hn::Mul(reach, hn::Set(d, Real(2 * kMinBoxSlope)));
+  const auto steep = hn::Lt(hn::Abs(dir), least);
+  V slack = hn::MulAdd(hn::Abs(o), hn::Set(d, Real(kBoxOriginSlack)), give);
+  slack = hn::Add(slack, hn::IfThenElseZero(steep, steep_slack));
+  slack = hn::CopySignToAbs(slack, dir);
+  const V per_length =
+      hn::Div(hn::Set(d, Real(1)), hn::IfThenElse(steep, hn::CopySignToAbs(least, dir), dir));
+  hn::Store(per_length, d, scale);
+  hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), per_length)), d, enter);
+  hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), per_length)), d, leave);
+  return slack;
+}
+
 template <typename TreeReal, typename Real>
 HWY_INLINE void PrepareBoxes(const TreeView<TreeReal>& tree, Packet<Real>& packet) {
   if (packet.has_boxes) return;
@@ -197,29 +226,16 @@ HWY_INLINE void PrepareBoxes(const TreeView<TreeReal>& tree, Packet<Real>& packe
     furthest = hn::Max(furthest, hn::Abs(o));
     reach = hn::Max(reach, hn::Max(hn::Sub(upper, o), hn::Sub(o, lower)));
   }
-  // NaN passes none of these; such a lane is kDone anyway.
-  auto fits = hn::And(hn::Ge(size, hn::Set(d, Real(kMinBoxDirection))),
-                      hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
-  fits = hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate))));
-  fits = hn::And(fits, hn::Ge(hn::Load(d, packet.t_min), hn::Zero(d)));
+  // A lane with NaN is kDone anyway.
+  const auto fits = FitsBoxes(d, size, furthest, hn::Load(d, packet.t_min));
   packet.without_boxes = ~MaskBits(d, fits) & OpenLanes(packet);
 
-  const auto least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));
-  const auto steep_slack = hn::Mul(reach, hn::Set(d, Real(2 * kMinBoxSlope)));
+  const auto give = hn::Set(d, Real(kBoxAbsoluteSlack));
   for (int axis = 0; axis < 3; ++axis) {
-    const auto o = hn::Load(d, packet.origin[axis]);
-    const auto dir = hn::Load(d, packet.direction[axis]);
-    const auto steep = hn::Lt(hn::Abs(dir), least);
-    auto slack = hn::MulAdd(hn::Abs(o), hn::Set(d, Real(kBoxOriginSlack)),
-                            hn::Set(d, Real(kBoxAbsoluteSlack)));
-    slack = hn::Add(slack, hn::IfThenElseZero(steep, steep_slack));
-    slack = hn::CopySignToAbs(slack, dir);
-    const auto scale =
-        hn::Div(hn::Set(d, Real(1)), hn::IfThenElse(steep, hn::CopySignToAbs(least, dir), dir));
-    hn::Store(scale, d, packet.scale[axis]);
+    const auto slack = StoreSlabs<Real>(hn::Load(d, packet.origin[axis]),
+                                        hn::Load(d, packet.direction[axis]), size, reach, give,
+                                        packet.scale[axis], packet.enter[axis], packet.leave[axis]);
     hn::Store(slack, d, packet.slack[axis]);
-    hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), scale)), d, packet.enter[axis]);
-    hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), scale)), d, packet.leave[axis]);
   }
   StoreIds(d,
            Octants(d, hn::Load(d, packet.direction[0]), hn::Load(d, packet.direction[1]),

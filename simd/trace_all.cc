@@ -168,62 +168,27 @@ HWY_INLINE void CollectLeaf(const TreeView<Real>& tree, std::uint32_t leaf, Repe
   }
 }
 
+// What a list keeps of the leaves on its ray's way.
+template <typename Real>
+struct ListLeaves {
+  const TreeView<Real>& tree;
+  RepeatedRay<Real>& ray;
+  HitList<Real>& list;
+
+  HWY_INLINE bool Test(std::uint32_t leaf) const {
+    CollectLeaf(tree, leaf, ray, list);
+    return list.is_done();
+  }
+  HWY_INLINE Real end() const { return list.last(); }
+};
+
 // Every leaf of the subtree of `start` that the ray of `lane` meets before the list ends, the
 // nearest children first. Box tests by `Slabs` must hold for the ray.
 template <class Slabs, typename Real>
 HWY_NOINLINE void CollectAlong(const TreeView<Real>& tree, const Packet<Real>& packet,
                                std::uint32_t lane, std::uint32_t start, RepeatedRay<Real>& ray,
                                HitList<Real>& list) {
-  using Distance = typename Slabs::Distance;
-  const Slabs slabs(tree, packet, lane);
-  Distance stack_enter[kTreeStackSize];
-  std::uint32_t stack_child[kTreeStackSize];
-  std::uint32_t size = 0, child = start;
-  Distance last = Slabs::LastOf(list.last());
-  for (;;) {
-    while (!IsLeaf(child)) {
-      const TreeNode& node = tree.nodes[child];
-      alignas(kAlignment) Distance enters[kTreeWidth];
-      std::uint32_t met = 0;
-      for (std::uint32_t i = 0; i < kTreeWidth; i += LaneCount(typename Slabs::D())) {
-        met |= slabs.Meet(node, i, last, enters) << i;
-      }
-      if (met == 0) break;
-      const int first = std::countr_zero(met);
-      child = node.child[first];
-      // Goes on with the nearest child, and sorts the others, so that a full list ends the ray
-      // soon.
-      Distance nearest = enters[first];
-      const std::uint32_t base = size;
-      for (met &= met - 1; met != 0; met &= met - 1) {
-        const int i = std::countr_zero(met);
-        Distance enter = enters[i];
-        std::uint32_t other = node.child[i];
-        if (enter < nearest) {
-          std::swap(enter, nearest);
-          std::swap(other, child);
-        }
-        std::uint32_t at = size++;
-        for (; at != base && stack_enter[at - 1] < enter; --at) {
-          stack_enter[at] = stack_enter[at - 1];
-          stack_child[at] = stack_child[at - 1];
-        }
-        stack_enter[at] = enter;
-        stack_child[at] = other;
-        FetchAhead(tree, other);
-      }
-    }
-    if (IsLeaf(child)) {
-      CollectLeaf(tree, child, ray, list);
-      if (list.is_done()) return;
-      last = Slabs::LastOf(list.last());
-    }
-    do {
-      if (size == 0) return;
-      --size;
-    } while (stack_enter[size] > last);
-    child = stack_child[size];
-  }
+  WalkRay<Slabs>(tree, packet, lane, start, ListLeaves<Real>{tree, ray, list});
 }
 
 template <typename Real>
@@ -240,16 +205,16 @@ HWY_NOINLINE void CollectEveryLeaf(const TreeView<Real>& tree, RepeatedRay<Real>
 // A packet whose lanes have lists, as the tests of a vector of rays see it. What they keep is each
 // lane's hit of one primitive, to be collected.
 template <typename Real>
-struct alignas(kAlignment) ListPacket {
+struct ListPacket : PacketRays<Real> {
   static constexpr std::uint32_t kSize = kPacketSize<Real>;
+  using PacketRays<Real>::packet;
 
-  Real t[kSize], u[kSize], v[kSize], det[kSize];
+  alignas(kAlignment) Real t[kSize], u[kSize], v[kSize], det[kSize];
   std::uint32_t id[kSize];
-  Packet<Real>& packet;
   HitList<Real>* lists;  // a lane
 
   HWY_INLINE ListPacket(Packet<Real>& rays, HitList<Real>* of_lanes)
-      : packet(rays), lists(of_lanes) {}
+      : PacketRays<Real>{rays}, lists(of_lanes) {}
 
   HWY_INLINE void Forget() {
     const Lanes<Real> d;
@@ -268,21 +233,10 @@ struct alignas(kAlignment) ListPacket {
     }
   }
 
-  HWY_INLINE const Real* origin(int k) const { return packet.origin[k]; }
-  HWY_INLINE const Real* direction(int k) const { return packet.direction[k]; }
-  HWY_INLINE const Real* shear_x() const { return packet.shear_x; }
-  HWY_INLINE const Real* shear_y() const { return packet.shear_y; }
+  // In place of the packet's own.
   HWY_INLINE HitSlots<Real> slots() const {
     auto& self = const_cast<ListPacket&>(*this);
     return {self.t, self.u, self.v, self.det, self.id};
-  }
-  template <class D>
-  HWY_INLINE hn::Vec<D> TMin(D d) const {
-    return hn::Load(d, packet.t_min);
-  }
-  template <class D>
-  HWY_INLINE hn::Vec<IdLanes<D>> Sources(D d) const {
-    return LoadIds(d, packet.source);
   }
 };
 

@@ -33,10 +33,13 @@ HWY_INLINE void FetchAhead(const TreeView<Real>& tree, std::uint32_t child) {
   }
 }
 
-// Traces the ray of `lane` through the subtree of `start`. Box tests by `Slabs` must hold for it.
-template <Query kQuery, class Slabs, typename Real>
-HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lane,
-                           std::uint32_t start) {
+// Takes the ray of `lane` through the subtree of `start`, the nearest child first. Box tests by
+// `Slabs` must hold for it. `leaves` tests primitives and knows where the ray ends:
+//   bool Test(leaf): returns whether the ray is done.
+//   Real end().
+template <class Slabs, typename Real, class Leaves>
+HWY_INLINE void WalkRay(const TreeView<Real>& tree, const Packet<Real>& packet, std::uint32_t lane,
+                        std::uint32_t start, Leaves leaves) {
   using Distance = typename Slabs::Distance;
   const Slabs slabs(tree, packet, lane);
   // Children to visit, the nearest on top. Two arrays: loading an entry whole right after its parts
@@ -45,7 +48,7 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
   std::uint32_t stack_child[kTreeStackSize];
   std::size_t size = 0;
   std::uint32_t child = start;
-  Distance last = Slabs::LastOf(packet.t_best[lane]);
+  Distance last = Slabs::LastOf(leaves.end());
   for (;;) {
     while (!IsLeaf(child)) {
       const TreeNode& node = tree.nodes[child];
@@ -81,9 +84,8 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
       }
     }
     if (IsLeaf(child)) {
-      LeafAgainstRay<kQuery>(tree, child, packet, lane);
-      if (kQuery == Query::kOccluded && packet.t_best[lane] == kDone<Real>) return;
-      last = Slabs::LastOf(packet.t_best[lane]);
+      if (leaves.Test(child)) return;
+      last = Slabs::LastOf(leaves.end());
     }
     do {
       if (size == 0) return;
@@ -91,6 +93,27 @@ HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std
     } while (stack_enter[size] > last);
     child = stack_child[size];
   }
+}
+
+// What a lane keeps of the leaves on its ray's way.
+template <Query kQuery, typename Real>
+struct LaneLeaves {
+  const TreeView<Real>& tree;
+  Packet<Real>& packet;
+  std::uint32_t lane;
+
+  HWY_INLINE bool Test(std::uint32_t leaf) const {
+    LeafAgainstRay<kQuery>(tree, leaf, packet, lane);
+    return kQuery == Query::kOccluded && packet.t_best[lane] == kDone<Real>;
+  }
+  HWY_INLINE Real end() const { return packet.t_best[lane]; }
+};
+
+// Traces the ray of `lane` through the subtree of `start`. Box tests by `Slabs` must hold for it.
+template <Query kQuery, class Slabs, typename Real>
+HWY_NOINLINE void TraceRay(const TreeView<Real>& tree, Packet<Real>& packet, std::uint32_t lane,
+                           std::uint32_t start) {
+  WalkRay<Slabs>(tree, packet, lane, start, LaneLeaves<kQuery, Real>{tree, packet, lane});
 }
 
 // The same for the rays of `lanes` (bits).

@@ -52,6 +52,12 @@ struct alignas(kAlignment) MappedRays {
   RayIntervals<Real> intervals() const { return {t_min, t_max}; }
 };
 
+// Where a ray ends, or kDone: an infinite interval admits every finite t; NaN, none.
+template <typename Real>
+HWY_INLINE Real EndOf(Real t_max) {
+  return t_max > kDefaultTMax<Real> ? kDefaultTMax<Real> : t_max >= 0 ? t_max : kDone<Real>;
+}
+
 // Rays of a packet of the group, as bits.
 struct ActiveRays {
   std::uint16_t packet, lanes;
@@ -104,10 +110,7 @@ class InstanceWalk {
       const V furthest = hn::Max(hn::Max(hn::Abs(ox), hn::Abs(oy)), hn::Abs(oz));
       // The end is asked for lane by lane.
       const auto traceable = IsTraceable(d, ox, oy, oz, dx, dy, dz, t_min, t_min);
-      auto fits = hn::And(hn::Ge(size, hn::Set(d, Real(kMinBoxDirection))),
-                          hn::Le(size, hn::Set(d, Real(kMaxBoxDirection))));
-      fits = hn::And(fits, hn::Le(furthest, hn::Set(d, Real(kMaxBoxCoordinate))));
-      fits = hn::And(fits, hn::Ge(t_min, hn::Zero(d)));
+      const auto fits = FitsBoxes(d, size, furthest, t_min);
       const std::uint32_t all = MaskBits(d, traceable), fit = MaskBits(d, hn::And(traceable, fits));
       alignas(kAlignment) std::uint32_t octants[kMaxLanes];
       StoreIds(d, Octants(d, dx, dy, dz), octants);
@@ -172,29 +175,13 @@ class InstanceWalk {
       const V upper = hn::Set(d, static_cast<Real>(tree_.upper[axis]));
       reach = hn::Max(reach, hn::Max(hn::Sub(upper, o), hn::Sub(o, lower)));
     }
-    PrepareSlabs(size, reach, i);
-  }
-
-  // SlabsOf of src/scalar/ray_slabs.h.
-  HWY_INLINE void PrepareSlabs(V size, V reach, std::uint32_t i) {
-    const D d;
-    const V least = hn::Mul(size, hn::Set(d, Real(kMinBoxSlope)));
-    const V steep_slack = hn::Mul(reach, hn::Set(d, Real(2 * kMinBoxSlope)));
-    const V way_slack =
-        hn::Mul(reach, hn::Set(d, static_cast<Real>(tree_.condition) * Real(kInstanceSlack)));
+    const V give =
+        hn::MulAdd(reach, hn::Set(d, static_cast<Real>(tree_.condition) * Real(kInstanceSlack)),
+                   hn::Set(d, Real(kBoxAbsoluteSlack)));
     for (int axis = 0; axis < 3; ++axis) {
-      const V o = hn::Load(d, group_.origin[axis] + i),
-              dir = hn::Load(d, group_.direction[axis] + i);
-      const auto steep = hn::Lt(hn::Abs(dir), least);
-      V slack = hn::MulAdd(hn::Abs(o), hn::Set(d, Real(kBoxOriginSlack)),
-                           hn::Set(d, Real(kBoxAbsoluteSlack)));
-      slack = hn::Add(hn::Add(slack, hn::IfThenElseZero(steep, steep_slack)), way_slack);
-      slack = hn::CopySignToAbs(slack, dir);
-      const V scale =
-          hn::Div(hn::Set(d, Real(1)), hn::IfThenElse(steep, hn::CopySignToAbs(least, dir), dir));
-      hn::Store(scale, d, group_.scale[axis] + i);
-      hn::Store(hn::Neg(hn::Mul(hn::Add(o, slack), scale)), d, group_.enter[axis] + i);
-      hn::Store(hn::Neg(hn::Mul(hn::Sub(o, slack), scale)), d, group_.leave[axis] + i);
+      StoreSlabs<Real>(hn::Load(d, group_.origin[axis] + i),
+                       hn::Load(d, group_.direction[axis] + i), size, reach, give,
+                       group_.scale[axis] + i, group_.enter[axis] + i, group_.leave[axis] + i);
     }
   }
 

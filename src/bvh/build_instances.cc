@@ -1,6 +1,5 @@
 #include "src/bvh/build_instances.h"
 
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 namespace sheaf {
 namespace {
 
+using bvh::BoxState;
 using bvh::PrimitiveBox;
 using bvh::PrimitiveBoxes;
 
@@ -46,12 +46,12 @@ void IncludeMapped(const AffineMap& map, const TreeNode& node, std::uint32_t chi
   }
 }
 
-// The box of an instance; false where its object is empty. The boxes of the root's children are
+// The box of an instance; kNever where its object is empty. The boxes of the root's children are
 // tighter around what is turned than one box around all.
 template <typename Real>
-bool MakeInstanceBox(const AffineMap& to_world, const TreeView<Real>& tree, std::uint32_t instance,
-                     PrimitiveBox& box) {
-  if (tree.node_count == 0) return false;
+BoxState MakeInstanceBox(const AffineMap& to_world, const TreeView<Real>& tree,
+                         std::uint32_t instance, PrimitiveBox& box) {
+  if (tree.node_count == 0) return BoxState::kNever;
   Bounds bounds;
   for (std::uint32_t child = 0; child < kTreeWidth; ++child) {
     if (tree.nodes[0].child[child] == kNoChild) continue;
@@ -65,38 +65,7 @@ bool MakeInstanceBox(const AffineMap& to_world, const TreeView<Real>& tree, std:
   }
   box.tag = bvh::MakeTag(PrimitiveKind{}, instance);
   box.unused = 0;
-  return true;
-}
-
-template <typename Real>
-PrimitiveBoxes MakeBoxes(std::span<const PlacedObject> places,
-                         const std::vector<TreeView<Real>>& trees) {
-  PrimitiveBoxes result;
-  result.boxes = std::make_unique_for_overwrite<PrimitiveBox[]>(places.size());
-  std::vector<std::uint8_t> is_there(places.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    is_there[i] = MakeInstanceBox(places[i].to_world, trees[places[i].object],
-                                  static_cast<std::uint32_t>(i), result.boxes[i])
-                      ? 1
-                      : 0;
-  });
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (is_there[i] == 0) continue;
-    PrimitiveBox& box = result.boxes[count++];
-    box = result.boxes[i];
-    result.all.Include(BoxOf(box));
-    if (IsGiant(box)) {
-      box = bvh::GiantBox(box.tag);
-    } else {
-      result.others.Include(BoxOf(box));
-    }
-    const bvh::Box4 bounds = BoxOf(box);
-    result.bounds.Include(bounds);
-    result.centroids.Include(bounds.lower + bounds.upper, bounds.lower + bounds.upper);
-  }
-  result.counts[PrimitiveKind{}] = count;
-  return result;
+  return BoxState::kFinite;
 }
 
 // A node whose children are the instances of a leaf, one each.
@@ -142,7 +111,10 @@ void SplitLeaves(const std::vector<std::uint32_t>& instances,
 
 template <typename Real>
 void BuildForest(std::span<const PlacedObject> places, InstanceForest<Real>& forest) {
-  PrimitiveBoxes boxes = MakeBoxes(places, forest.trees);
+  const auto make = [&](std::uint32_t i, PrimitiveBox& box) {
+    return MakeInstanceBox(places[i].to_world, forest.trees[places[i].object], i, box);
+  };
+  PrimitiveBoxes boxes = bvh::MakeBoxes(static_cast<std::uint32_t>(places.size()), make);
   const std::uint32_t count = boxes.counts.total();
   for (int axis = 0; axis < 3; ++axis) {
     forest.all_lower[axis] = count == 0 ? kMax : boxes.all.lower[axis];

@@ -141,12 +141,9 @@ GeometryStatistics GeometryOf<Real>::statistics() const {
   statistics.bytes = sizeof(*this) + sizeof(Data) + data().tree.bytes() +
                      9 * data().normal[0][0].size() * sizeof(Real) +
                      2 * data().first.capacity() * sizeof(data().first[0]);
-  // Every node comes before its children.
-  std::vector<std::uint8_t> level(tree.node_count, 1);
+  statistics.depth = DepthOf(tree.nodes, tree.node_count);
   for (std::uint32_t i = 0; i < tree.node_count; ++i) {
-    statistics.depth = std::max<std::uint32_t>(statistics.depth, level[i]);
     for (const std::uint32_t child : tree.nodes[i].child) {
-      if (!IsLeaf(child)) level[child] = static_cast<std::uint8_t>(level[i] + 1);
       statistics.leaves += IsLeaf(child) && child != kNoChild;
     }
   }

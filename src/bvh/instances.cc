@@ -9,6 +9,7 @@
 #include "src/bvh/build_instances.h"
 #include "src/bvh/geometry_access.h"
 #include "src/bvh/instances_access.h"
+#include "src/bvh/tree.h"
 #include "src/scene/affine_map.h"
 
 namespace sheaf {
@@ -98,14 +99,7 @@ InstanceStatistics InstancesOf<Real>::statistics() const {
   statistics.nodes = forest.node_count;
   statistics.bytes +=
       sizeof(Data) + forest.bytes() + data_->geometries.capacity() * sizeof(data_->geometries[0]);
-  // Every node comes before its children.
-  std::vector<std::uint8_t> level(forest.node_count, 1);
-  for (std::uint32_t i = 0; i < forest.node_count; ++i) {
-    statistics.depth = std::max<std::uint32_t>(statistics.depth, level[i]);
-    for (const std::uint32_t child : forest.nodes[i].child) {
-      if (!IsLeaf(child)) level[child] = static_cast<std::uint8_t>(level[i] + 1);
-    }
-  }
+  statistics.depth = DepthOf(forest.nodes.data(), forest.node_count);
   return statistics;
 }
 

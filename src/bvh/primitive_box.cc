@@ -154,6 +154,15 @@ Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<Real>& geometry) {
   return result;
 }
 
+PrimitiveBoxes MakeBoxes(std::uint32_t count,
+                         const std::function<BoxState(std::uint32_t, PrimitiveBox&)>& make) {
+  PrimitiveBoxes result;
+  result.boxes = std::make_unique_for_overwrite<PrimitiveBox[]>(count);
+  const std::int64_t made = FillKind(count, result.boxes.get(), result, make);
+  result.counts[PrimitiveKind{}] = static_cast<std::uint32_t>(made);
+  return result;
+}
+
 template BoxState MakeBox(const GeometryView<float>&, std::uint32_t, PrimitiveBox&);
 template BoxState MakeBox(const GeometryView<double>&, std::uint32_t, PrimitiveBox&);
 template Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<float>&);

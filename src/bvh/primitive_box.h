@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "sheaf/error.h"
@@ -67,6 +68,11 @@ struct PrimitiveBoxes {
 // coordinate is infinite. Runs on the threads of the caller's arena.
 template <typename Real>
 Result<PrimitiveBoxes> MakePrimitiveBoxes(const GeometryView<Real>& geometry);
+
+// The same of `count` things of the first kind, whose boxes make(index, box) makes, kInfinite for
+// none of them.
+PrimitiveBoxes MakeBoxes(std::uint32_t count,
+                         const std::function<BoxState(std::uint32_t, PrimitiveBox&)>& make);
 
 }  // namespace sheaf::bvh
 

@@ -64,13 +64,12 @@ RayIntervals<Real> IntervalsOf(const TraceIntervalOf<Real>& interval) {
 }
 
 template <typename Real>
-scalar::Ray<Real> RayAt(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
+scalar::Ray<Real> RayIn(const RayView<Real>& rays, const RayIntervals<Real>& intervals,
                         std::uint32_t i) {
-  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
-          rays.source ? rays.source[i] : kNoPrimitive,
-          intervals.t_min ? intervals.t_min[i] : intervals.all_t_min,
-          intervals.t_max ? intervals.t_max[i] : intervals.all_t_max};
+  scalar::Ray<Real> ray = scalar::RayAt(rays, i);
+  ray.t_min = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
+  ray.t_max = intervals.t_max ? intervals.t_max[i] : intervals.all_t_max;
+  return ray;
 }
 
 // The baseline, as the kernels are called.
@@ -79,7 +78,7 @@ void ScalarClosest(const TreeView<Real>& tree, const RayView<Real>& rays,
                    const RayIntervals<Real>& intervals, std::uint32_t count,
                    Coherence /*coherence*/, const HitOutput<Real>& hits) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const scalar::Hit<Real> hit = scalar::TraceClosest(tree, RayAt(rays, intervals, i));
+    const scalar::Hit<Real> hit = scalar::TraceClosest(tree, RayIn(rays, intervals, i));
     hits.t[i] = hit.t;
     hits.u[i] = hit.u;
     hits.v[i] = hit.v;
@@ -92,7 +91,7 @@ void ScalarOccluded(const TreeView<Real>& tree, const RayView<Real>& rays,
                     const RayIntervals<Real>& intervals, std::uint32_t count,
                     Coherence /*coherence*/, std::uint32_t* occluded) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    occluded[i] = scalar::TraceOccluded(tree, RayAt(rays, intervals, i)) ? 1 : 0;
+    occluded[i] = scalar::TraceOccluded(tree, RayIn(rays, intervals, i)) ? 1 : 0;
   }
 }
 

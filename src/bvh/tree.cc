@@ -1,6 +1,7 @@
 #include "src/bvh/tree.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace sheaf {
 namespace {
@@ -32,6 +33,18 @@ std::size_t Tree<Real>::bytes() const {
   std::size_t bytes = Bytes(nodes);
   for (const PrimitiveBlocks<Real>& kind : blocks) bytes += Bytes(kind.fields) + Bytes(kind.id);
   return bytes;
+}
+
+std::uint32_t DepthOf(const TreeNode* nodes, std::uint32_t count) {
+  std::vector<std::uint8_t> level(count, 1);
+  std::uint32_t depth = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    depth = std::max<std::uint32_t>(depth, level[i]);
+    for (const std::uint32_t child : nodes[i].child) {
+      if (!IsLeaf(child)) level[child] = static_cast<std::uint8_t>(level[i] + 1);
+    }
+  }
+  return depth;
 }
 
 template struct Tree<float>;

@@ -32,6 +32,9 @@ struct Tree {
   std::size_t bytes() const;  // all arrays
 };
 
+// Levels of nodes. Every node comes before its children.
+std::uint32_t DepthOf(const TreeNode* nodes, std::uint32_t count);
+
 }  // namespace sheaf
 
 #endif  // SHEAF_BVH_TREE_H_

@@ -13,12 +13,11 @@ namespace sheaf {
 template <typename Real>
 scalar::Ray<Real> InstanceRayAt(const RayView<Real>& rays, const std::uint32_t* source_instance,
                                 const RayIntervals<Real>& intervals, Real t_max, std::uint32_t i) {
-  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
-          rays.source ? rays.source[i] : kNoPrimitive,
-          intervals.t_min ? intervals.t_min[i] : intervals.all_t_min,
-          t_max,
-          source_instance ? source_instance[i] : kNoInstance};
+  scalar::Ray<Real> ray = scalar::RayAt(rays, i);
+  ray.t_min = intervals.t_min ? intervals.t_min[i] : intervals.all_t_min;
+  ray.t_max = t_max;
+  if (source_instance) ray.instance = source_instance[i];
+  return ray;
 }
 
 // The baseline, and what no box test in Real holds for. Contracts as of InstancesClosestKernel.

@@ -1,7 +1,6 @@
 #include "src/render/compile_geometry.h"
 
 #include <array>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <map>
@@ -14,7 +13,6 @@
 #include "src/bvh/build_tree.h"
 #include "src/render/round_corners.h"
 #include "src/scene/affine_map.h"
-#include "src/scene/direction.h"
 #include "src/scene/placed_groups.h"
 #include "src/scene/shapes.h"
 #include "src/scene/textures.h"
@@ -173,22 +171,6 @@ class GeometryWriter {
   std::uint32_t object_ = 0, material_ = 0;
 };
 
-// Where a group is computed: near the origin and of moderate size, as scenes are.
-ScenePlacement PlaceGroup(const Group& group) {
-  constexpr double kLeastSize = 0x1p-20, kMostSize = 0x1p36, kMostDistances = 8;
-  ScenePlacement placement;
-  const std::optional<Bounds> bounds = BoundsOf(group);
-  if (!bounds) return placement;
-  const Vec3d half = (bounds->max - bounds->min) * 0.5, middle = bounds->min + half;
-  const double reach = LargestComponent(half);
-  if (!(reach > 0) || !std::isfinite(reach)) return placement;
-  if (LargestComponent(middle) > kMostDistances * reach) placement.origin = middle;
-  if (!(reach >= kLeastSize && reach <= kMostSize)) {
-    placement.scale = std::ldexp(1.0, -std::ilogb(reach));
-  }
-  return placement;
-}
-
 // From where a group is computed to where it stands, as the scene is computed.
 AffineMap PlacedMap(const ScenePlacement& scene, const PlacedGroup& placed,
                     const ScenePlacement& group) {
@@ -208,10 +190,12 @@ PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,
   PointBounds bounds = writer.bounds();
   if (scene.groups.empty()) return bounds;
   auto number = static_cast<std::uint32_t>(scene.objects.size());
+  std::vector<std::optional<Bounds>> boxes;
   std::vector<ScenePlacement> group_placements;
   group_placements.reserve(scene.groups.size());
   for (const Group& group : scene.groups) {
-    writer.PlaceBy(group_placements.emplace_back(PlaceGroup(group)));
+    const auto& box = boxes.emplace_back(BoundsOf(group.objects));
+    writer.PlaceBy(group_placements.emplace_back(box ? PlaceGroup(*box) : ScenePlacement()));
     for (const Object& object : group.objects) writer.Add(number++, object);
     to.group_ends.push_back(writer.counts());
   }
@@ -219,11 +203,11 @@ PointBounds CompileGeometry(const Scene& scene, const ScenePlacement& placement,
     to.places.push_back(
         {PlacedMap(placement, placed, group_placements[placed.group]), placed.group});
     to.to_world.push_back(to.places.back().to_world);
-  }
-  ForEachPlacedBox(scene, [&](const Bounds& box) {
+    if (!boxes[placed.group]) continue;
+    const Bounds box = Mapped(placed.to_world, *boxes[placed.group]);
     bounds.low = glm::min(bounds.low, placement.Point(box.min));
     bounds.high = glm::max(bounds.high, placement.Point(box.max));
-  });
+  }
   return bounds;
 }
 

@@ -6,15 +6,6 @@
 #include "src/scalar/place_surface.h"
 
 namespace sheaf {
-namespace {
-
-template <typename Real>
-scalar::Ray<Real> RayIn(const RayView<Real>& rays, std::uint32_t i) {
-  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]}};
-}
-
-}  // namespace
 
 template <typename Real>
 RayBatch<Real> InstancedHits<Real>::Trace(const RayBatch<Real>& batch,
@@ -26,13 +17,8 @@ RayBatch<Real> InstancedHits<Real>::Trace(const RayBatch<Real>& batch,
   rays_.Reserve(batch.count, ~FieldBit(&RayView<Real>::source));
   const RayOutput<Real> mapped = rays_.output();
   for (std::uint32_t i = 0; i < batch.count; ++i) {
-    const auto ray = scalar::RayAtHit(frame_, RayIn(batch.rays, i), instance_[i]);
-    mapped.origin_x[i] = ray.origin.x;
-    mapped.origin_y[i] = ray.origin.y;
-    mapped.origin_z[i] = ray.origin.z;
-    mapped.direction_x[i] = ray.direction.x;
-    mapped.direction_y[i] = ray.direction.y;
-    mapped.direction_z[i] = ray.direction.z;
+    scalar::StoreRay(scalar::RayAtHit(frame_, scalar::RayAt(batch.rays, i), instance_[i]), mapped,
+                     i);
   }
   batch_rays_ = batch.rays;
   RayBatch<Real> result = batch;
@@ -55,7 +41,7 @@ void InstancedHits<Real>::StretchFootprints(const HitBin& bin,
   const RayView<Real> rays = rays_.view();
   for (std::uint32_t i = 0; i < bin.batch.count; ++i) {
     if (instance_[bin.batch.ray[i]] == kNoInstance) continue;
-    const Real stretch = scalar::StretchOf(RayIn(rays, bin.batch.ray[i]).direction);
+    const Real stretch = scalar::StretchOf(scalar::RayAt(rays, bin.batch.ray[i]).direction);
     for (Real* const field : {surfaces.footprint_u, surfaces.footprint_v, surfaces.footprint_u2,
                               surfaces.footprint_v2}) {
       if (field) field[i] = field[i] * stretch;
@@ -80,7 +66,7 @@ void InstancedHits<Real>::Place(const HitBin& bin, const SurfaceView<Real>& surf
     if (is_curved) {
       surface.shadow_end = {surfaces.shadow_x[i], surfaces.shadow_y[i], surfaces.shadow_z[i]};
     }
-    scalar::PlaceSurface(frame_, RayIn(batch_rays_, ray), instance, surface);
+    scalar::PlaceSurface(frame_, scalar::RayAt(batch_rays_, ray), instance, surface);
     placed.position_x[i] = surface.position.x;
     placed.position_y[i] = surface.position.y;
     placed.position_z[i] = surface.position.z;

@@ -12,23 +12,10 @@ namespace {
 template <typename Real>
 scalar::Ray<Real> RayIn(const RayView<Real>& rays, const std::uint32_t* instances, std::uint32_t i,
                         Real t_max) {
-  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
-          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
-          rays.source[i],
-          kDefaultTMin<Real>,
-          t_max,
-          instances ? instances[i] : kNoInstance};
-}
-
-template <typename Real>
-void StoreRay(const scalar::Ray<Real>& ray, const RayOutput<Real>& rays, std::uint32_t i) {
-  rays.origin_x[i] = ray.origin.x;
-  rays.origin_y[i] = ray.origin.y;
-  rays.origin_z[i] = ray.origin.z;
-  rays.direction_x[i] = ray.direction.x;
-  rays.direction_y[i] = ray.direction.y;
-  rays.direction_z[i] = ray.direction.z;
-  rays.source[i] = ray.source;
+  scalar::Ray<Real> ray = scalar::RayAt(rays, i);
+  ray.t_max = t_max;
+  if (instances) ray.instance = instances[i];
+  return ray;
 }
 
 template <typename Real>
@@ -47,7 +34,7 @@ void LightPasser<Real>::Pass(const ShadowRays<Real>& shadow, Real t_max,
   const bool has_instances = frame_.has_instances();
   const std::uint32_t* const given = has_instances ? shadow.source_instances : nullptr;
   const auto keep = [&](const scalar::Ray<Real>& ray, std::uint32_t k) {
-    StoreRay(ray, rays_.output(), k);
+    scalar::StoreRay(ray, rays_.output(), k);
     if (has_instances) source_instances_[k] = ray.instance;
   };
   if (has_instances) {

@@ -15,7 +15,8 @@
 namespace sheaf {
 namespace {
 
-// The eye may be this many times as far from the origin as from what it sees nearest.
+// The eye may be this many times as far from the origin as from what it sees nearest, and a group's
+// middle as its objects are from that.
 constexpr double kMostDistances = 8;
 // The largest coordinate of a scene that is not scaled. Box tests hold to 2^39, and light needs the
 // squares of distances.
@@ -53,6 +54,12 @@ Vec3d OriginAt(const Viewpoint& view) {
   return origin;
 }
 
+// What brings a largest coordinate to a moderate size.
+double ScaleFor(double size) {
+  if (size >= kLeastSize && size <= kMostSize) return 1;
+  return size > 0 && std::isfinite(size) ? std::ldexp(1.0, -std::ilogb(size)) : 1;
+}
+
 }  // namespace
 
 ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
@@ -72,13 +79,20 @@ ScenePlacement PlaceScene(const Scene& scene, const Camera& camera) {
   placement.nearest = view.distance;
   if (LargestComponent(view.place) > kMostDistances * view.distance)
     placement.origin = OriginAt(view);
-  const double size = std::max({LargestComponent(all->min - placement.origin),
-                                LargestComponent(all->max - placement.origin),
-                                LargestComponent(camera.eye - placement.origin)});
-  if (!(size >= kLeastSize && size <= kMostSize) && size > 0 && std::isfinite(size)) {
-    placement.scale = std::ldexp(1.0, -std::ilogb(size));
-  }
+  placement.scale = ScaleFor(std::max({LargestComponent(all->min - placement.origin),
+                                       LargestComponent(all->max - placement.origin),
+                                       LargestComponent(camera.eye - placement.origin)}));
   FitCorner(scene, placement);
+  return placement;
+}
+
+ScenePlacement PlaceGroup(const Bounds& bounds) {
+  ScenePlacement placement;
+  const Vec3d half = (bounds.max - bounds.min) * 0.5, middle = bounds.min + half;
+  const double reach = LargestComponent(half);
+  if (!(reach > 0) || !std::isfinite(reach)) return placement;
+  if (LargestComponent(middle) > kMostDistances * reach) placement.origin = middle;
+  placement.scale = ScaleFor(reach);
   return placement;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "sheaf/scene.h"
+#include "src/scene/bounds.h"
 
 namespace sheaf {
 
@@ -24,6 +25,9 @@ struct ScenePlacement {
 
 // For what `camera` sees of `scene`. A scene that already lies well stays where it is.
 ScenePlacement PlaceScene(const Scene& scene, const Camera& camera);
+
+// Likewise for a group, whose objects have these bounds, wherever it stands.
+ScenePlacement PlaceGroup(const Bounds& bounds);
 
 }  // namespace sheaf
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "simd/query.h"
+#include "simd/streams.h"
 #include "src/core/vec3.h"
 
 namespace sheaf::scalar {
@@ -18,6 +19,26 @@ struct Ray {
   Real t_max = kDefaultTMax<Real>;
   std::uint32_t instance = kNoInstance;  // that the source belongs to
 };
+
+// Ray `i` of a stream, with the interval of everything in front.
+template <typename Real>
+Ray<Real> RayAt(const RayView<Real>& rays, std::uint32_t i) {
+  return {{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]},
+          {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]},
+          rays.source ? rays.source[i] : kNoPrimitive};
+}
+
+// Writes what a stream has of a ray.
+template <typename Real>
+void StoreRay(const Ray<Real>& ray, const RayOutput<Real>& rays, std::uint32_t i) {
+  rays.origin_x[i] = ray.origin.x;
+  rays.origin_y[i] = ray.origin.y;
+  rays.origin_z[i] = ray.origin.z;
+  rays.direction_x[i] = ray.direction.x;
+  rays.direction_y[i] = ray.direction.y;
+  rays.direction_z[i] = ray.direction.z;
+  if (rays.source) rays.source[i] = ray.source;
+}
 
 template <typename Real>
 struct Hit {

@@ -21,11 +21,16 @@ std::optional<Bounds> BoundsOf(const Shape& shape) {
   return bounds;
 }
 
-std::optional<Bounds> BoundsOf(const Scene& scene) {
+std::optional<Bounds> BoundsOf(const std::vector<Object>& objects) {
   std::optional<Bounds> bounds;
-  for (const Object& object : scene.objects) {
+  for (const Object& object : objects) {
     ForEachExtreme(object.shape, [&](const Vec3d& point) { Include(point, bounds); });
   }
+  return bounds;
+}
+
+std::optional<Bounds> BoundsOf(const Scene& scene) {
+  std::optional<Bounds> bounds = BoundsOf(scene.objects);
   ForEachPlacedBox(scene, [&](const Bounds& box) {
     Include(box.min, bounds);
     Include(box.max, bounds);

@@ -3,6 +3,7 @@
 #define SHEAF_SCENE_BOUNDS_H_
 
 #include <optional>
+#include <vector>
 
 #include "sheaf/scene.h"
 #include "src/scene/shapes.h"
@@ -15,6 +16,9 @@ struct Bounds {
 
 // The smallest box around a shape; nothing around a mesh without triangles.
 std::optional<Bounds> BoundsOf(const Shape& shape);
+
+// The smallest box around objects; nothing where there are none.
+std::optional<Bounds> BoundsOf(const std::vector<Object>& objects);
 
 // A box around all objects and instances, the smallest around objects; nothing where there are
 // none.

@@ -59,17 +59,6 @@ Result<Scene> Flattened(const Scene& scene) {
   return flat;
 }
 
-std::optional<Bounds> BoundsOf(const Group& group) {
-  std::optional<Bounds> all;
-  for (const Object& object : group.objects) {
-    const std::optional<Bounds> bounds = BoundsOf(object.shape);
-    if (!bounds) continue;
-    if (!all) all = bounds;
-    *all = {glm::min(all->min, bounds->min), glm::max(all->max, bounds->max)};
-  }
-  return all;
-}
-
 Bounds Mapped(const Transform& transform, const Bounds& bounds) {
   Bounds mapped{transform.translation, transform.translation};
   for (int axis = 0; axis < 3; ++axis) {

@@ -30,9 +30,6 @@ std::uint64_t CountPlacedGroups(const Scene& scene);
 // They in order, each instance before those that its group is made of. Groups keep their rules.
 std::vector<PlacedGroup> PlaceGroups(const Scene& scene);
 
-// The box around the objects of a group alone; nothing where there are none.
-std::optional<Bounds> BoundsOf(const Group& group);
-
 // The box around what a box becomes.
 Bounds Mapped(const Transform& transform, const Bounds& bounds);
 
@@ -44,7 +41,7 @@ Result<Scene> Flattened(const Scene& scene);
 template <typename F>
 void ForEachPlacedBox(const Scene& scene, F f) {
   std::vector<std::optional<Bounds>> boxes;
-  for (const Group& group : scene.groups) boxes.push_back(BoundsOf(group));
+  for (const Group& group : scene.groups) boxes.push_back(BoundsOf(group.objects));
   for (const PlacedGroup& placed : PlaceGroups(scene)) {
     if (boxes[placed.group]) f(Mapped(placed.to_world, *boxes[placed.group]));
   }

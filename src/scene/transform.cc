@@ -8,6 +8,7 @@
 
 #include "src/core/match.h"
 #include "src/core/strict_tan.h"
+#include "src/scene/placed_groups.h"
 #include "src/scene/projection.h"
 #include "src/scene/shapes.h"
 
@@ -52,7 +53,7 @@ std::string TransformScene(const Transform& transform, Scene* scene) {
     if (!fault.empty()) return fault;
   }
   for (Instance& instance : scene->instances) {
-    const Transform moved = transform * Transform{instance.linear, instance.translation};
+    const Transform moved = transform * TransformOf(instance);
     instance.linear = moved.linear;
     instance.translation = moved.translation;
   }
