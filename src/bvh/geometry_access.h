@@ -58,8 +58,13 @@ struct GeometryAccess {
     return FlattenTo<float>(input, {.threads = threads});
   }
 
+  // A class of its own: clang 14 looks at an alias's access from where it is used.
   template <typename Real>
-  using Data = typename GeometryOf<Real>::Data;
+  struct DataType {
+    using Type = typename GeometryOf<Real>::Data;
+  };
+  template <typename Real>
+  using Data = typename DataType<Real>::Type;
   template <typename Real>
   static const Data<Real>& DataOf(const GeometryOf<Real>& geometry) {
     return geometry.data();

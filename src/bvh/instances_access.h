@@ -17,8 +17,13 @@ struct InstancesOf<Real>::Data {
 };
 
 struct InstancesAccess {
+  // A class of its own: clang 14 looks at an alias's access from where it is used.
   template <typename Real>
-  using Data = typename InstancesOf<Real>::Data;
+  struct DataType {
+    using Type = typename InstancesOf<Real>::Data;
+  };
+  template <typename Real>
+  using Data = typename DataType<Real>::Type;
   // Null: nothing to hit.
   template <typename Real>
   static const Data<Real>* DataOf(const InstancesOf<Real>& instances) {
