@@ -80,6 +80,37 @@ TEST_CASE("each frame is the picture of a run that renders it alone") {
   }
 }
 
+TEST_CASE("a sequence keeps the exposure that is metered at its frame 0") {
+  const Workspace work;
+  // The camera flies to the dark side, until it sees the ball alone.
+  json scene = json::parse(kMoving);
+  scene["settings"]["background"] = {0, 0, 0};
+  scene["lights"][0]["point"]["position"] = {0, 1, 9};
+  scene["lights"][0]["intensity"] = 900;
+  scene["cameras"][1]["path"][2]["eye"] = {3, 1, -3};
+  WriteText(work / "s.json", scene.dump());
+  const auto render = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"render", work / "s.json", "--camera", "fly", "-q"});
+    REQUIRE(work.Run(options).code == 0);
+  };
+  // Frame 0 as `--exposure auto` has it tells by how many stops.
+  render({"--frames", "0", "--exposure", "auto", "-o", work / "auto0.png"});
+  std::string stops;
+  for (int thirds = -30; thirds <= 30 && stops.empty(); ++thirds) {
+    const std::string ev = fmt::format("{}", thirds / 3.0);
+    render({"--frames", "0", "--exposure", ev, "-o", work / "ev0.png"});
+    if (ReadText(work / "ev0.png") == ReadText(work / "auto0.png")) stops = ev;
+  }
+  REQUIRE(!stops.empty());
+  render({"--frames", "7", "--exposure", stops, "-o", work / "ev7.png"});
+  render({"--time", fmt::format("{}", 7 / 24.0), "--exposure", "auto", "-o", work / "alone7.png"});
+  REQUIRE(ReadText(work / "alone7.png") != ReadText(work / "ev7.png"));
+  render({"--frames", "5..7", "--exposure", "auto", "-o", work / "auto{frame}.png"});
+  CHECK(ReadText(work / "auto7.png") == ReadText(work / "ev7.png"));
+  render({"--frames", "0..7", "--exposure", "auto", "-o", work / "all{frame}.png"});
+  CHECK(ReadText(work / "all7.png") == ReadText(work / "ev7.png"));
+}
+
 TEST_CASE("frame 0 of a turntable is the picture without one, and so is frame N") {
   const Workspace work;
   WriteText(work / "s.json", kMoving);

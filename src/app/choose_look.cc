@@ -45,6 +45,10 @@ Tone ToneOf(const LookOptions& given, Tone otherwise) {
   return given.tone == "filmic" ? Tone::kFilmic : Tone::kLinear;
 }
 
+bool IsMetered(const LookOptions& given, const Settings& settings) {
+  return !given.exposure.value_or(Exposure{settings.ev}).ev;
+}
+
 Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
                         const RenderOptions& options) {
   Look look;

@@ -43,6 +43,9 @@ struct Look {
 // What --tone names, or `otherwise`.
 Tone ToneOf(const LookOptions& given, Tone otherwise);
 
+// Whether the exposure is that of what a camera sees.
+bool IsMetered(const LookOptions& given, const Settings& settings);
+
 // Where the exposure is metered, it renders a small picture.
 Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
                         const RenderOptions& options);

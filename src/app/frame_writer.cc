@@ -14,7 +14,7 @@ namespace {
 // because the command line may have moved the camera.
 std::string SettingsText(const RenderOptions& options, const Frame& frame) {
   const Camera& camera = *frame.camera;
-  const Look& look = frame.look;
+  const Look look = frame.look.value_or(Look());
   const Vec3d& eye = camera.eye;
   const Vec3d& look_at = camera.look_at;
   const bool perspective = std::holds_alternative<Perspective>(camera.projection);
@@ -50,8 +50,9 @@ Result<FrameWriter> FrameWriter::Create(const Scene& scene, const Frame& frame,
   spec.metadata = {{"Scene", scene_path},
                    {"Camera", frame.camera->name},
                    {"Settings", SettingsText(options, frame)}};
-  spec.ev = frame.look.ev;
-  spec.tone = frame.look.tone;
+  const Look shown = frame.look.value_or(Look());
+  spec.ev = shown.ev;
+  spec.tone = shown.tone;
   spec.format = frame.format;
   if (HoldsLayers(FormatPath(frame.path, frame.format))) spec.layers = options.layers;
   Result<PictureWriter> picture = PictureWriter::Create(frame.path, spec);

@@ -26,7 +26,7 @@ struct Frame {
   std::string path;
   std::string format;  // what the path has to end in, without the dot; empty: it does
   std::vector<std::pair<Layer, std::string>> beside;  // layers in files of their own
-  Look look = {};                                     // of a picture of bytes
+  std::optional<Look> look = {};  // of a picture of bytes; none: found when it is rendered
   bool is_denoised = false;
 };
 

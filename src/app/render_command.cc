@@ -11,6 +11,7 @@
 #include "src/app/frame_writer.h"
 #include "src/app/interrupt.h"
 #include "src/app/join_ranks.h"
+#include "src/app/meter_sequence.h"
 #include "src/app/output_path.h"
 #include "src/app/plan_frames.h"
 #include "src/app/plan_render.h"
@@ -85,6 +86,11 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
   SequencePace pace(frames.size());
   std::vector<FrameRecord> records;
   std::optional<int> posed = frames.front().number;
+  if (IsMeteredOnce(request, opened->scene, frames)) {
+    const Status metered = MeterSequence(request, options, opened, &frames);
+    if (!metered) return metered.error();
+    posed = kMeteredFrame;
+  }
   for (Frame& frame : frames) {
     const std::vector<std::string> files = FilesOf(frame);
     if (journal && journal->Has(files)) {

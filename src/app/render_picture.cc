@@ -91,7 +91,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
                                   const std::string& label, std::optional<std::uint64_t> identity,
                                   Leader* leader) {
   FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
-  if (!HoldsFloats(FormatPath(frame.path, frame.format))) {
+  if (!frame.look && !HoldsFloats(FormatPath(frame.path, frame.format))) {
     const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
     if (!look) return look.error();
     frame.look = look.value();
@@ -104,7 +104,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   Result<std::optional<BandJournal>> journal = OpenJournal(request, frame, identity);
   if (!journal) return journal.error();
   HeatPicture heat(options);
-  DarkPicture dark(scene.settings.transfer, frame.look.ev);
+  DarkPicture dark(scene.settings.transfer, frame.look.value_or(Look()).ev);
   const RowSink finish = [&](const Film& rows) {
     dark.AddRows(rows);
     if (options.layers.has(Layer::kHeat)) heat.AddRows(rows);
