@@ -44,7 +44,8 @@ void RenderFrame(benchmark::State& state, const Scene& scene, const Camera& came
   };
   RenderStats stats;
   for (auto _ : state) {
-    if (!RenderFrame(scene, camera, options, skips, drop, &stats, nullptr)) {
+    ScenePreparer preparer(scene);
+    if (!RenderFrame(preparer, camera, options, skips, drop, &stats, nullptr)) {
       state.SkipWithError("rendering failed");
       return;
     }

@@ -127,7 +127,8 @@ TEST_CASE("skipping changes no bit") {
         return Status(Done{});
       };
       options.band_rows = options.height;
-      REQUIRE(RenderFrame(scene, scene.cameras[0], options, Skips::kOff, keep, &off, nullptr));
+      ScenePreparer preparer(scene);
+      REQUIRE(RenderFrame(preparer, scene.cameras[0], options, Skips::kOff, keep, &off, nullptr));
       CHECK(PixelsThatDiffer(film, forced) == 0);
       CHECK(on.rays.shadow <= off.rays.shadow);
       CHECK(on.rays.reflected == off.rays.reflected);

@@ -49,16 +49,17 @@ bool IsMetered(const LookOptions& given, const Settings& settings) {
   return !given.exposure.value_or(Exposure{settings.ev}).ev;
 }
 
-Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
+Result<Look> ChooseLook(const LookOptions& given, const Renderer& renderer, const Camera& camera,
                         const RenderOptions& options) {
   Look look;
-  look.tone = ToneOf(given, scene.settings.tone);
-  const Exposure exposure = given.exposure.value_or(Exposure{scene.settings.ev});
+  const Settings& settings = renderer.scene().settings;
+  look.tone = ToneOf(given, settings.tone);
+  const Exposure exposure = given.exposure.value_or(Exposure{settings.ev});
   if (exposure.ev) {
     look.ev = *exposure.ev;
     return look;
   }
-  const Result<Film> small = Render(scene, camera, SmallPicture(options, kMeterSide));
+  const Result<Film> small = renderer.Render(camera, SmallPicture(options, kMeterSide));
   if (!small) return small.error();
   look.ev = MeterExposure(small.value());
   return look;

@@ -47,7 +47,7 @@ Tone ToneOf(const LookOptions& given, Tone otherwise);
 bool IsMetered(const LookOptions& given, const Settings& settings);
 
 // Where the exposure is metered, it renders a small picture.
-Result<Look> ChooseLook(const LookOptions& given, const Scene& scene, const Camera& camera,
+Result<Look> ChooseLook(const LookOptions& given, const Renderer& renderer, const Camera& camera,
                         const RenderOptions& options);
 
 }  // namespace sheaf

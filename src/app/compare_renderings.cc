@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A target on a number of threads. No choice of these may change a bit of the picture.
-struct Renderer {
+struct Contender {
   std::string target;
   int threads;
   std::string Name() const {
@@ -28,7 +28,7 @@ struct Renderer {
   }
 };
 
-Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Camera& camera,
+Result<Film> RenderWith(const Contender& renderer, const Scene& scene, const Camera& camera,
                         RenderOptions options) {
   const Status chosen = ChooseTarget(renderer.target, options);
   if (!chosen) return chosen.error();
@@ -44,10 +44,10 @@ Result<Film> RenderWith(const Renderer& renderer, const Scene& scene, const Came
   return film;
 }
 
-Result<std::vector<Renderer>> ListRenderers(const CompareRequest& request) {
+Result<std::vector<Contender>> ListRenderers(const CompareRequest& request) {
   const Result<std::vector<std::string>> targets = ExpandTargets(request.targets);
   if (!targets) return targets.error();
-  std::vector<Renderer> renderers;
+  std::vector<Contender> renderers;
   for (const int threads : request.threads) {
     for (const std::string& target : targets.value()) renderers.push_back({target, threads});
   }
@@ -95,9 +95,9 @@ std::string DescribeDifference(const Scene& scene, const Camera& camera,
 }  // namespace
 
 Result<ExitCode> CompareRenderings(const CompareRequest& request) {
-  const Result<std::vector<Renderer>> listed = ListRenderers(request);
+  const Result<std::vector<Contender>> listed = ListRenderers(request);
   if (!listed) return listed.error();
-  const std::vector<Renderer>& renderers = listed.value();
+  const std::vector<Contender>& renderers = listed.value();
   if (renderers.size() < 2) {
     return Usage("--targets, --threads: there is one rendering, and nothing to compare it with");
   }

@@ -22,11 +22,11 @@ namespace {
 constexpr int kLookoutSide = 64;  // pixels
 
 // A small picture of what is in view, by the numbers of objects.
-Result<Film> LookOut(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+Result<Film> LookOut(const Renderer& renderer, const Camera& camera, const RenderOptions& options) {
   RenderOptions small = SmallPicture(options, kLookoutSide);
   small.max_depth = 0;
   small.layers.Add(Layer::kId);
-  return Render(scene, camera, small);
+  return renderer.Render(camera, small);
 }
 
 bool IsInside(const Object& object, const Vec3d& point) {
@@ -56,10 +56,11 @@ void DarkPicture::AddRows(const Film& rows) {
   }
 }
 
-Result<std::string> DarkPicture::Explain(const Scene& scene, const Camera& camera,
+Result<std::string> DarkPicture::Explain(const Renderer& renderer, const Camera& camera,
                                          const RenderOptions& options) const {
   if (!is_dark_ && !is_uniform_) return std::string();
-  const Result<Film> seen = LookOut(scene, camera, options);
+  const Scene& scene = renderer.scene();
+  const Result<Film> seen = LookOut(renderer, camera, options);
   if (!seen) return seen.error();
   const Film& film = seen.value();
   const std::string name = Printable(camera.name);

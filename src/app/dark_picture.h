@@ -22,7 +22,7 @@ class DarkPicture {
 
   // Once the picture is whole: why it is black, or of one colour; empty where it is neither, or for
   // a good reason. It renders a small picture to see what is in view.
-  Result<std::string> Explain(const Scene& scene, const Camera& camera,
+  Result<std::string> Explain(const Renderer& renderer, const Camera& camera,
                               const RenderOptions& options) const;
 
  private:

@@ -22,12 +22,13 @@ Status MeterSequence(const RenderRequest& request, const RenderOptions& options,
     const Status posed = PoseScene(request.scene, OptionsAt(request, kMeteredFrame), opened);
     if (!posed) return posed;
   }
+  const Renderer renderer(opened->scene);
   std::map<std::size_t, Look> looks;  // by camera
   for (Frame& frame : *frames) {
     const auto [place, is_new] = looks.try_emplace(frame.camera_index);
     if (is_new) {
       const Camera& camera = opened->scene.cameras[frame.camera_index];
-      const Result<Look> look = ChooseLook(request.look, opened->scene, camera, options);
+      const Result<Look> look = ChooseLook(request.look, renderer, camera, options);
       if (!look) return look.error();
       place->second = look.value();
     }

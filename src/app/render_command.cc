@@ -91,6 +91,7 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
     if (!metered) return metered.error();
     posed = kMeteredFrame;
   }
+  Renderer renderer(opened->scene);
   for (Frame& frame : frames) {
     const std::vector<std::string> files = FilesOf(frame);
     if (journal && journal->Has(files)) {
@@ -105,10 +106,11 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
       const Status moved = PoseScene(request.scene, OptionsAt(request, *frame.number), opened);
       if (!moved) return moved.error();
       posed = frame.number;
+      renderer = Renderer(opened->scene);
     }
     frame.camera = &opened->scene.cameras[frame.camera_index];
     Result<FrameRecord> record =
-        RenderPicture(request, opened->scene, frame, options, style, LabelOf(frame, pace),
+        RenderPicture(request, renderer, frame, options, style, LabelOf(frame, pace),
                       found.value().identity, leader);
     if (!record) return record.error();
     if (journal) {

@@ -62,12 +62,13 @@ Result<int> Restore(const PixelRect& area, Layers layers, const RowSink& write,
 }
 
 // Renders alone without a leader.
-Status RenderOnRanks(const Scene& scene, const Frame& frame, const RenderOptions& options,
+Status RenderOnRanks(const Renderer& renderer, const Frame& frame, const RenderOptions& options,
                      const RowSink& sink, Leader* leader, FrameRecord* record,
                      RenderProgress* progress) {
   if (leader == nullptr) {
-    return RenderRows(scene, *frame.camera, options, sink, &record->stats, progress);
+    return renderer.RenderRows(*frame.camera, options, sink, &record->stats, progress);
   }
+  const Scene& scene = renderer.scene();
   const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
   if (!checked) return checked.error();
   const FrameOrder order{static_cast<int>(frame.camera_index), frame.number.has_value(),
@@ -86,13 +87,14 @@ void WarnOfOtherWork(const RenderRequest& request, const std::string& journal) {
                            PrintablePath(journal)));
 }
 
-Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
-                                  const RenderOptions& options, ProgressStyle style,
+Result<FrameRecord> RenderPicture(const RenderRequest& request, const Renderer& renderer,
+                                  Frame frame, const RenderOptions& options, ProgressStyle style,
                                   const std::string& label, std::optional<std::uint64_t> identity,
                                   Leader* leader) {
+  const Scene& scene = renderer.scene();
   FrameRecord record{frame.camera->name, frame.number, frame.path, options, {}};
   if (!frame.look && !HoldsFloats(FormatPath(frame.path, frame.format))) {
-    const Result<Look> look = ChooseLook(request.look, scene, *frame.camera, options);
+    const Result<Look> look = ChooseLook(request.look, renderer, *frame.camera, options);
     if (!look) return look.error();
     frame.look = look.value();
   }
@@ -136,8 +138,8 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
     RenderOptions rest = work;
     if (record.resumed_rows > 0) rest.crop = area;
     const Status rendered =
-        RenderOnRanks(scene, frame, rest, journal.value() ? keep_and_write : write, leader, &record,
-                      watch.progress());
+        RenderOnRanks(renderer, frame, rest, journal.value() ? keep_and_write : write, leader,
+                      &record, watch.progress());
     // A signal in the last tenth of a second may find the frame finished. The command stops even
     // so.
     if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {
@@ -152,7 +154,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& sce
   if (const Status written = writer.value().Finish(); !written) return written.error();
   // A part of a picture may well be empty.
   if (!options.crop && !request.quiet) {
-    const Result<std::string> reason = dark.Explain(scene, *frame.camera, options);
+    const Result<std::string> reason = dark.Explain(renderer, *frame.camera, options);
     if (reason && !reason.value().empty()) PrintMessage("sheaf: warning: " + reason.value());
   }
   for (const auto& [layer, path] : frame.beside) {

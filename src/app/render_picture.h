@@ -20,8 +20,8 @@ namespace sheaf {
 // With a leader all of its ranks render, else this process alone. With an identity of the run,
 // finished bands go to a journal beside the picture, and those that an earlier run left there are
 // taken from it. The journal stays: RemoveJournal.
-Result<FrameRecord> RenderPicture(const RenderRequest& request, const Scene& scene, Frame frame,
-                                  const RenderOptions& options, ProgressStyle style,
+Result<FrameRecord> RenderPicture(const RenderRequest& request, const Renderer& renderer,
+                                  Frame frame, const RenderOptions& options, ProgressStyle style,
                                   const std::string& label, std::optional<std::uint64_t> identity,
                                   Leader* leader);
 

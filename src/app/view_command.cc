@@ -103,7 +103,7 @@ Result<WindowModule> LoadWindow() {
 // The scene as `sheaf render` would have it, and how its light is shown through `camera`.
 Result<LoadedView> ViewOf(const ViewArguments& request, OpenedScene opened, const Camera& camera) {
   const RenderOptions frame = FrameOptions(opened.scene.settings, request.size, request.samples);
-  const Result<Look> look = ChooseLook(request.look, opened.scene, camera, frame);
+  const Result<Look> look = ChooseLook(request.look, Renderer(opened.scene), camera, frame);
   if (!look) return look.error();
   return LoadedView{std::move(opened.scene), std::move(opened.files), std::move(opened.warnings),
                     Development{look.value().ev, look.value().tone}};

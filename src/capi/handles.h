@@ -32,7 +32,10 @@ struct sheaf_geometry {
   sheaf::Geometry geometry;
 };
 struct sheaf_scene {
-  sheaf::ReadSceneResult read;
+  explicit sheaf_scene(sheaf::ReadSceneResult result)
+      : read(std::move(result)), renderer(read.scene) {}
+  const sheaf::ReadSceneResult read;
+  const sheaf::Renderer renderer;
 };
 struct sheaf_progress {
   sheaf::RenderProgress progress;

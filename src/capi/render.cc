@@ -125,7 +125,8 @@ Result<Film> RenderFrame(const sheaf_scene* scene, const sheaf_render_options* g
       own.view != nullptr ? CameraOf(*own.view) : SceneCamera(scene, own.camera);
   if (!camera) return camera.error();
   RenderStats stats;
-  Result<Film> film = Render(scene->read.scene, camera.value(), options.value(), &stats,
+  Result<Film> film =
+      scene->renderer.Render(camera.value(), options.value(), &stats,
                              own.progress == nullptr ? nullptr : &own.progress->progress);
   if (!film) return film;
   if (const Status put = PutStatistics(stats, statistics); !put) return put.error();

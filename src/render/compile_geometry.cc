@@ -54,6 +54,7 @@ class GeometryWriter {
     to_.object_of_primitive.reserve(counts.total());
     // In doubles corners stay what they are.
     if constexpr (std::is_same_v<Real, float>) rounded_ = RoundCorners(scene, placement);
+    to_.has_rounded_corners = !rounded_.empty();
   }
 
   void Add(std::uint32_t index, const Object& object) {

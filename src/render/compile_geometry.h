@@ -31,6 +31,7 @@ struct CompiledGeometry {
   std::vector<PlacedObject> places;  // until the trees are built; an object is a group
   std::vector<AffineMap> to_world;   // by instance
   InstanceForest<Real> forest;
+  bool has_rounded_corners = false;  // any that RoundCorners moves
 
   // The trees over what the arrays hold, after CompileGeometry. Fails as BuildTree does.
   Status BuildTrees(int threads);

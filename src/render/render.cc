@@ -17,8 +17,20 @@ const char* PhaseName(Phase phase) {
   return kNames[static_cast<int>(phase)];
 }
 
-Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
-                    RenderStats* stats, RenderProgress* progress) {
+struct Renderer::Impl {
+  explicit Impl(const Scene& scene) : preparer(scene) {}
+  ScenePreparer preparer;
+};
+
+Renderer::Renderer(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const Scene& Renderer::scene() const { return impl_->preparer.scene(); }
+
+Result<Film> Renderer::Render(const Camera& camera, const RenderOptions& options,
+                              RenderStats* stats, RenderProgress* progress) const {
   RenderOptions one_band = options;
   one_band.band_rows = kMaxImageSide;
   Film film;
@@ -26,14 +38,25 @@ Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOption
     film = std::move(band);
     return Status(Done{});
   };
-  const Status rendered = RenderFrame(scene, camera, one_band, Skips::kOn, keep, stats, progress);
+  const Status rendered =
+      RenderFrame(impl_->preparer, camera, one_band, Skips::kOn, keep, stats, progress);
   if (!rendered) return rendered.error();
   return film;
 }
 
+Status Renderer::RenderRows(const Camera& camera, const RenderOptions& options, const RowSink& sink,
+                            RenderStats* stats, RenderProgress* progress) const {
+  return RenderFrame(impl_->preparer, camera, options, Skips::kOn, sink, stats, progress);
+}
+
+Result<Film> Render(const Scene& scene, const Camera& camera, const RenderOptions& options,
+                    RenderStats* stats, RenderProgress* progress) {
+  return Renderer(scene).Render(camera, options, stats, progress);
+}
+
 Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
                   const RowSink& sink, RenderStats* stats, RenderProgress* progress) {
-  return RenderFrame(scene, camera, options, Skips::kOn, sink, stats, progress);
+  return Renderer(scene).RenderRows(camera, options, sink, stats, progress);
 }
 
 }  // namespace sheaf

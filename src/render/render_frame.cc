@@ -11,16 +11,15 @@
 
 #include "simd/shading.h"
 #include "simd/tree.h"
-#include "src/bvh/build_tree.h"
 #include "src/core/running_target.h"
 #include "src/render/check_options.h"
 #include "src/render/compile_scene.h"
 #include "src/render/place_scene.h"
+#include "src/render/prepare_scene.h"
 #include "src/render/render_bands.h"
 #include "src/render/sample_pattern.h"
 #include "src/render/scalar_tile_renderer.h"
 #include "src/render/tile_renderer.h"
-#include "src/scene/shapes.h"
 
 namespace sheaf {
 namespace {
@@ -30,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 // What a frame's rays read, and what owns it.
 template <typename Real>
 struct CompiledFrame {
-  CompiledScene<Real> scene;
+  std::shared_ptr<const PreparedScene<Real>> scene;
   std::vector<Real> sample_x, sample_y;
   FrameView<Real> view;
 };
@@ -46,24 +45,18 @@ bool IsDistributed(const FrameView<Real>& frame) {
 }
 
 template <typename Real>
-Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, const Camera& camera,
+Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(ScenePreparer& preparer,
+                                                          const Camera& camera,
                                                           const RenderOptions& options,
                                                           Skips skips) {
-  if (const Status counts = CheckCounts(CountPrimitives(scene)); !counts.ok()) {
-    return Error{ErrorKind::kScene, counts.error().message};
-  }
-  auto frame = std::make_unique<CompiledFrame<Real>>();
-  CompiledScene<Real>& compiled = frame->scene;
-  const ScenePlacement placement = PlaceScene(scene, camera);
+  const Scene& scene = preparer.scene();
   const Integrator integrator = options.integrator.value_or(scene.settings.integrator);
-  compiled = CompileScene<Real>(scene, placement, integrator);
-  if (skips == Skips::kOff) {
-    for (MaterialData<Real>& material : compiled.materials) material.needs |= kNeedsAll;
-  }
-  GeometryData<Real>& geometry = compiled.objects.data;
-  if (const Status built = compiled.objects.BuildTrees(options.threads); !built.ok()) {
-    return Error{ErrorKind::kScene, built.error().message};
-  }
+  auto prepared = preparer.Prepare<Real>(camera, integrator, skips, options.threads);
+  if (!prepared) return prepared.error();
+  auto frame = std::make_unique<CompiledFrame<Real>>();
+  frame->scene = std::move(prepared).value();
+  const CompiledScene<Real>& compiled = frame->scene->compiled;
+  const ScenePlacement& placement = frame->scene->placement;
   const PixelFilter filter = scene.settings.filter;
   const auto pattern = options.error ? SobolPattern(options.samples, filter)
                                      : SamplePattern(options.samples, filter);
@@ -73,7 +66,7 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(const Scene& scene, co
   }
   frame->view = {
       compiled.geometry(),
-      geometry.tree.view(),
+      compiled.objects.data.tree.view(),
       compiled.objects.primitives,
       compiled.objects.object_of_primitive,
       compiled.materials,
@@ -114,12 +107,13 @@ using MakeWorker = std::function<std::unique_ptr<TileWorker>()>;
 using Schedule = std::function<Status(const RenderOptions& options, const MakeWorker& make_worker)>;
 
 template <typename Real>
-Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& options, Skips skips,
-                const Schedule& schedule, RenderStats& stats, RenderProgress& progress) {
+Status RenderIn(ScenePreparer& scene, const Camera& camera, const RenderOptions& options,
+                Skips skips, const Schedule& schedule, RenderStats& stats,
+                RenderProgress& progress) {
   const Clock::time_point start = Clock::now();
   const auto compiled = CompileFrame<Real>(scene, camera, options, skips);
   if (!compiled) return compiled.error();
-  const CompiledGeometry<Real>& objects = compiled.value()->scene.objects;
+  const CompiledGeometry<Real>& objects = compiled.value()->scene->compiled.objects;
   stats.compile_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   progress.stage.store(RenderStage::kRendering, std::memory_order_relaxed);
   stats.spheres = objects.data.arrays.count(PrimitiveKind::kSphere);
@@ -138,12 +132,12 @@ Status RenderIn(const Scene& scene, const Camera& camera, const RenderOptions& o
   return schedule(options, make_worker);
 }
 
-Status RenderScheduled(const Scene& scene, const Camera& camera, const RenderOptions& options,
+Status RenderScheduled(ScenePreparer& scene, const Camera& camera, const RenderOptions& options,
                        Skips skips, const Schedule& schedule, RenderStats& stats,
                        RenderProgress& progress) {
-  const Result<RenderOptions> checked = CheckOptions(options, scene.settings);
+  const Result<RenderOptions> checked = CheckOptions(options, scene.scene().settings);
   if (!checked) return checked.error();
-  if (Status sound = Validate(scene); !sound) return sound;
+  if (Status sound = scene.Check(); !sound) return sound;
   if (Status sound = Validate(camera); !sound) return sound;
   stats = {};
   const auto render = options.precision == Precision::kDouble ? RenderIn<double> : RenderIn<float>;
@@ -152,7 +146,7 @@ Status RenderScheduled(const Scene& scene, const Camera& camera, const RenderOpt
 
 }  // namespace
 
-Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions& options,
+Status RenderFrame(ScenePreparer& scene, const Camera& camera, const RenderOptions& options,
                    Skips skips, const BandSink& sink, RenderStats* stats,
                    RenderProgress* progress) {
   RenderStats ignored_stats;
@@ -181,7 +175,8 @@ Status RenderAreas(const Scene& scene, const Camera& camera, const RenderOptions
     stats->threads = threads;
     return status;
   };
-  return RenderScheduled(scene, camera, options, Skips::kOn, areas, *stats, *progress);
+  ScenePreparer preparer(scene);
+  return RenderScheduled(preparer, camera, options, Skips::kOn, areas, *stats, *progress);
 }
 
 }  // namespace sheaf

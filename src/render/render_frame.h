@@ -8,15 +8,13 @@
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "src/render/band_queue.h"
+#include "src/render/prepare_scene.h"
 
 namespace sheaf {
 
-// Whether work that a scene does not need is left out. It changes no bit; tests see to that.
-enum class Skips { kOn, kOff };
-
 // Checks the options and renders in the arithmetic that they ask for. `stats` and `progress` may be
 // null.
-Status RenderFrame(const Scene& scene, const Camera& camera, const RenderOptions& options,
+Status RenderFrame(ScenePreparer& scene, const Camera& camera, const RenderOptions& options,
                    Skips skips, const BandSink& sink, RenderStats* stats, RenderProgress* progress);
 
 // Which pixels of the picture come next; false: none. It may wait.

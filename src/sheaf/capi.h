@@ -360,9 +360,10 @@ typedef struct sheaf_render_statistics {
 
 // A picture in linear light.
 typedef struct sheaf_film sheaf_film;
-// Renders what a camera sees. `options` and `statistics` may be NULL. Blocks until the frame is
-// done or has failed: with SHEAF_USAGE where an option is out of range, with SHEAF_BAD_SCENE where
-// the scene cannot be rendered, with SHEAF_INTERRUPTED where it was stopped.
+// Renders what a camera sees. The scene keeps what was made of it, such as its trees, for its next
+// picture. `options` and `statistics` may be NULL. Blocks until the frame is done or has failed:
+// with SHEAF_USAGE where an option is out of range, with SHEAF_BAD_SCENE where the scene cannot be
+// rendered, with SHEAF_INTERRUPTED where it was stopped.
 SHEAF_API sheaf_status sheaf_render(const sheaf_scene* scene, const sheaf_render_options* options,
                                     sheaf_render_statistics* statistics, sheaf_film** film);
 // Copies a picture: `rgb` has three floats a pixel, `row_stride` bytes between rows; 0: no gaps.

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "sheaf/error.h"
@@ -120,6 +121,37 @@ using RowSink = std::function<Status(const Film& rows)>;
 SHEAF_API Status RenderRows(const Scene& scene, const Camera& camera, const RenderOptions& options,
                             const RowSink& sink, RenderStats* stats = nullptr,
                             RenderProgress* progress = nullptr);
+
+// Renders picture after picture of one scene. What it makes of the scene, such as its trees and
+// tables, it keeps for the next picture, so that only the first waits for it; a camera far from the
+// origin, another integrator, or the other one of float and double make it anew. Its pictures have
+// the bits that the functions above give. It holds the last one of each arithmetic in memory. Any
+// number of threads may render by one Renderer at once.
+class Renderer {
+ public:
+  // The scene outlives the Renderer, and nothing changes it meanwhile: make a new one where it
+  // moves. Nothing is done before the first picture.
+  SHEAF_API explicit Renderer(const Scene& scene);
+  SHEAF_API ~Renderer();
+  // One that was moved from can only be given another or destroyed.
+  SHEAF_API Renderer(Renderer&&) noexcept;
+  SHEAF_API Renderer& operator=(Renderer&&) noexcept;
+
+  SHEAF_API const Scene& scene() const;
+
+  // What sheaf::Render does.
+  SHEAF_API Result<Film> Render(const Camera& camera, const RenderOptions& options = {},
+                                RenderStats* stats = nullptr,
+                                RenderProgress* progress = nullptr) const;
+  // What sheaf::RenderRows does.
+  SHEAF_API Status RenderRows(const Camera& camera, const RenderOptions& options,
+                              const RowSink& sink, RenderStats* stats = nullptr,
+                              RenderProgress* progress = nullptr) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 // ---- Denoising ----
 

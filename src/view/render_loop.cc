@@ -236,8 +236,12 @@ Status RenderLoop::RenderSide(const ViewRequest& request, const FrameJob& job,
     Publish(*picture);
     return Done{};
   };
-  const Status rendered =
-      RenderRows(*request.scene, request.camera, options, sink, &stats, &*progress_);
+  if (prepared_ != request.scene) {
+    renderer_.reset();
+    prepared_ = request.scene;
+    renderer_.emplace(*prepared_);
+  }
+  const Status rendered = renderer_->RenderRows(request.camera, options, sink, &stats, &*progress_);
   if (!rendered) return rendered;
   picture->sides.push_back(
       {stats.target, stats.wall_seconds, stats.compile_seconds, stats.rays.traced()});

@@ -78,6 +78,9 @@ class RenderLoop {
   std::shared_ptr<RenderProgress> progress_;
   std::uint64_t published_ = 0;
 
+  // The thread's own: the scene that is shown, and what was made of it.
+  std::shared_ptr<const Scene> prepared_;
+  std::optional<Renderer> renderer_;
   ShownFilm film_;
   double last_publish_ = 0;
   std::thread thread_;  // last: it uses all the others
