@@ -101,13 +101,23 @@ grep -q "started as 3 processes" refused.err || fail "a lone process of three is
 [[ ! -e a.png ]] || fail "a picture of a run that was refused"
 
 echo "kills"
+# Until a run has put at least so many bytes of finished rows on disk: it is then in the midst of its work, however
+# long its ranks took to start. A run that has ended is not waited for.
+journal=.slow.png.sheaf-journal
+await_journal() {
+  for _ in $(seq 1200); do
+    [[ -s $journal && $(stat -c %s $journal) -gt $1 ]] && return
+    kill -0 "$job" 2>/dev/null || break
+    sleep 0.05
+  done
+  fail "no rows on disk"
+}
 slow=(--size 512x2048 --spp 36 --threads 1 --quiet --resume)
 "$sheaf" render "$scene" -o slow-one.png --size 512x2048 --spp 36 --quiet
 for victim in first last all; do
   mpirun -n 3 "$sheaf" render "$scene" -o slow.png "${slow[@]}" 2>killed.err &
   job=$!
-  journal=.slow.png.sheaf-journal
-  for _ in $(seq 600); do [[ -s $journal && $(stat -c %s $journal) -gt 1000000 ]] && break; sleep 0.05; done
+  await_journal 1000000
   mapfile -t ranks < <(pgrep -P $job)
   case $victim in
     first) kill -KILL "${ranks[0]}" ;;
@@ -125,7 +135,7 @@ for victim in first last all; do
 done
 mpirun -n 2 "$sheaf" render "$scene" -o slow.png "${slow[@]}" 2>killed.err &
 job=$!
-sleep 1
+await_journal 100000
 kill -INT $job
 timeout 30 tail --pid=$job -f /dev/null || fail "ranks hang after SIGINT"
 wait $job && fail "an interrupted run ends well"
