@@ -26,7 +26,7 @@ install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/sheaf COMPONENT co
 # The documentation, and what the parts are made of (SPDX 2.3).
 set(SHEAF_DOC_DIR ${CMAKE_INSTALL_DATADIR}/doc/sheaf)
 install(FILES README.md CHANGELOG.md DESTINATION ${SHEAF_DOC_DIR} COMPONENT command)
-install(DIRECTORY docs DESTINATION ${SHEAF_DOC_DIR} COMPONENT command)
+install(DIRECTORY docs DESTINATION ${SHEAF_DOC_DIR} COMPONENT command PATTERN site EXCLUDE PATTERN build.sh EXCLUDE)
 if(NOT SHEAF_DEBIAN)  # Debian has the text of its own
   install(FILES LICENSES/Apache-2.0.txt RENAME LICENSE DESTINATION ${SHEAF_DOC_DIR} COMPONENT command)
 endif()
