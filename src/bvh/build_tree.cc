@@ -2,8 +2,6 @@
 
 #include <oneapi/tbb/task_arena.h>
 
-#include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -24,17 +22,8 @@ Result<Tree<Real>> Build(const GeometryView<Real>& geometry) {
   Result<PrimitiveBoxes> made = bvh::MakePrimitiveBoxes(geometry);
   if (!made) return made.error();
   PrimitiveBoxes boxes = std::move(made).value();
-  const bool is_empty = boxes.counts.total() == 0;
   Tree<Real> tree;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr float kMax = std::numeric_limits<float>::max();
-    tree.all_lower[axis] = is_empty ? kMax : boxes.all.lower[axis];
-    tree.all_upper[axis] = is_empty ? -kMax : boxes.all.upper[axis];
-    // Infinite, the other way round, where there is none but giants: box tests take that for a
-    // reach of nothing.
-    tree.lower[axis] = std::min(boxes.others.lower[axis], kMax);
-    tree.upper[axis] = std::max(boxes.others.upper[axis], -kMax);
-  }
+  tree.SetBounds(boxes.all, boxes.others);
   std::uint32_t* indices[kKindCount];  // which become ids
   for (std::size_t k = 0; k < kKindCount; ++k) {
     PrimitiveBlocks<Real>& blocks = tree.blocks[k];
@@ -42,7 +31,7 @@ Result<Tree<Real>> Build(const GeometryView<Real>& geometry) {
     blocks.id.Allocate(std::size_t{blocks.count} + kMaxLanes);
     indices[k] = blocks.id.data();
   }
-  if (!is_empty) {
+  if (boxes.counts.total() > 0) {
     tree.node_count = bvh::FlattenNodes(bvh::BuildNodes(boxes, indices), tree.nodes);
   }
   boxes.boxes.reset();  // before the blocks, which are as large

@@ -91,7 +91,20 @@ const typename GeometryOf<Real>::Data& GeometryOf<Real>::data() const {
     }
   };
   static const Empty kEmpty;
-  return data_ ? *data_ : kEmpty;
+  const Data* const own = data_.get();
+  return own ? *own : kEmpty;
+}
+
+template <typename Real>
+void GeometryOf<Real>::Data::Take(FlatInputOf<Real>& flat, Real scale_of_flat) {
+  scale = scale_of_flat;
+  first = std::move(flat.first);
+  first_triangle = std::move(flat.first_triangle);
+  never_hit = flat.never_hit;
+  skipped = flat.skipped;
+  for (std::size_t k = 0; k < 9; ++k) {
+    normal[k / 3][k % 3] = std::move(flat.arrays.normal[k / 3][k % 3]);
+  }
 }
 
 template <typename Real>
@@ -100,23 +113,27 @@ Result<GeometryOf<Real>> GeometryOf<Real>::Build(const GeometryInput& input,
   Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(input, options);
   if (!flattened) return flattened.error();
   FlatInputOf<Real>& flat = flattened.value();
-  auto data = std::make_unique<Data>();
-  data->scale = Rescale(flat);
-  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), options.threads);
-  if (!tree) return tree.error();
-  data->tree = std::move(tree).value();
-  data->view = data->tree.view();
-  data->first = std::move(flat.first);
-  data->first_triangle = std::move(flat.first_triangle);
-  data->never_hit = flat.never_hit;
-  data->skipped = flat.skipped;
-  for (std::size_t k = 0; k < 9; ++k) {
-    data->normal[k / 3][k % 3] = std::move(flat.arrays.normal[k / 3][k % 3]);
-  }
   GeometryOf geometry;
-  geometry.data_ = std::move(data);
+  const Real scale = Rescale(flat);
+  const Status built = GeometryAccess::BuildFrom(flat, scale, options.threads, geometry);
+  if (!built) return built.error();
   return geometry;
 }
+
+template <typename Real>
+Status GeometryAccess::BuildFrom(FlatInputOf<Real>& flat, Real scale, int threads,
+                                 GeometryOf<Real>& to) {
+  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), threads);
+  if (!tree) return tree.error();
+  auto data = std::make_unique<Data<Real>>();
+  data->tree = std::move(tree).value();
+  data->view = data->tree.view();
+  data->Take(flat, scale);
+  to.data_ = std::move(data);
+  return Done{};
+}
+template Status GeometryAccess::BuildFrom(FlatInputOf<float>&, float, int, Geometry&);
+template Status GeometryAccess::BuildFrom(FlatInputOf<double>&, double, int, GeometryD&);
 
 template <typename Real>
 std::array<float, 3> GeometryOf<Real>::lower() const {

@@ -38,7 +38,11 @@ struct GeometryOf<Real>::Data {
   std::vector<std::uint32_t> first_triangle{0};  // likewise
   std::uint32_t never_hit = 0, skipped = 0;
   AlignedArray<Real> normal[3][3];  // by triangle; empty where no mesh has any
+  double built_cost = -1;           // of the tree as it was built; below 0: not asked for yet
   PrimitiveIndex<Real> index;       // made at its first use
+
+  // Takes what the tree does not have.
+  void Take(FlatInputOf<Real>& flat, Real scale_of_flat);
 };
 
 // Multiplies all lengths by the power of two that triangles are hit at, which it returns; marks and
@@ -65,6 +69,11 @@ struct GeometryAccess {
   };
   template <typename Real>
   using Data = typename DataType<Real>::Type;
+  // Gives `to` a tree of its own over what `flat` holds, which Rescale has scaled by `scale`, and
+  // takes what the tree does not have. Fails as BuildTree does; `to` is then as it was.
+  template <typename Real>
+  static Status BuildFrom(FlatInputOf<Real>& flat, Real scale, int threads, GeometryOf<Real>& to);
+
   template <typename Real>
   static const Data<Real>& DataOf(const GeometryOf<Real>& geometry) {
     return geometry.data();

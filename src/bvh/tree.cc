@@ -1,6 +1,7 @@
 #include "src/bvh/tree.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace sheaf {
@@ -12,6 +13,19 @@ std::size_t Bytes(const AlignedArray<T>& array) {
 }
 
 }  // namespace
+
+template <typename Real>
+void Tree<Real>::SetBounds(const bvh::Box4& all, const bvh::Box4& others) {
+  // An infinite box, the other way round, is that of nothing; box tests take its largest floats for
+  // a reach of nothing.
+  constexpr float kMax = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    all_lower[axis] = std::min(all.lower[axis], kMax);
+    all_upper[axis] = std::max(all.upper[axis], -kMax);
+    lower[axis] = std::min(others.lower[axis], kMax);
+    upper[axis] = std::max(others.upper[axis], -kMax);
+  }
+}
 
 template <typename Real>
 TreeView<Real> Tree<Real>::view() const {

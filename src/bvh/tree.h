@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "simd/tree.h"
+#include "src/bvh/float4.h"
 #include "src/core/aligned_array.h"
 
 namespace sheaf {
@@ -28,6 +29,8 @@ struct Tree {
 
   PrimitiveBlocks<Real>& of(PrimitiveKind kind) { return blocks[IndexOf(kind)]; }
   const PrimitiveBlocks<Real>& of(PrimitiveKind kind) const { return blocks[IndexOf(kind)]; }
+  // Of all primitives, and of all but giants; where there are none, the boxes of none.
+  void SetBounds(const bvh::Box4& all, const bvh::Box4& others);
   TreeView<Real> view() const;
   std::size_t bytes() const;  // all arrays
 };

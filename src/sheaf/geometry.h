@@ -108,6 +108,17 @@ struct BuildOptions {
   NotFinite not_finite = NotFinite::kRefused;
 };
 
+struct UpdateOptions {
+  int threads = 0;  // as of BuildOptions
+  NotFinite not_finite = NotFinite::kRefused;
+  // A tree whose cost, by the surface area heuristic, has come to more than this many times that of
+  // the last tree that was built is built anew; 1 or more. Infinity: never for that reason.
+  double rebuild_above = 1.5;
+};
+
+// How a geometry was updated.
+enum class Updated { kRefit, kRebuilt };
+
 // What a geometry is made of, and takes.
 struct GeometryStatistics {
   std::uint32_t primitives;                 // in the tree, of all kinds
@@ -120,8 +131,8 @@ struct GeometryStatistics {
   std::size_t bytes;                   // of memory, all that the geometry holds
 };
 
-// Objects with a tree over their primitives; needs nothing of the input any more. Immutable, so
-// that any number of threads may use one; it can be moved, and is then empty.
+// Objects with a tree over their primitives; needs nothing of the input any more. Nothing but
+// Update changes one, so that any number of threads may use it; it can be moved, and is then empty.
 template <typename Real>
 class GeometryOf {
  public:
@@ -148,6 +159,17 @@ class GeometryOf {
     return Build(input, BuildOptions{.threads = threads});
   }
 
+  // Makes this what Build(input) makes: rays get the same hits and the same bits. Where `input` has
+  // as many objects, each with as many primitives of its kind, and of these the same can be hit,
+  // the tree is kept and its boxes are fitted to where the primitives are now, in a part of the
+  // time that a build takes; what has moved far from its neighbours makes such a tree slower, and
+  // it is built anew: see UpdateOptions. Anything else is built anew too. Not while others use this
+  // geometry: to trace rays meanwhile keep two and update them in turn. Instances of it have to be
+  // built again. Fails as Build does, and with kUsage where `rebuild_above` is below 1 or a NaN;
+  // the geometry then is what it was. Where memory runs out it has to be
+  // updated or built again before it is used.
+  SHEAF_API Result<Updated> Update(const GeometryInput& input, const UpdateOptions& options = {});
+
   // The smallest box around the primitives, up to a millionth of its size; lower > upper where
   // there are none. x, y, z; the largest float for what is larger.
   SHEAF_API std::array<float, 3> lower() const;
@@ -166,7 +188,7 @@ class GeometryOf {
   struct Data;
   const Data& data() const;
 
-  std::unique_ptr<const Data> data_;  // null: without objects
+  std::unique_ptr<Data> data_;  // null: without objects
 };
 using Geometry = GeometryOf<float>;
 using GeometryD = GeometryOf<double>;
