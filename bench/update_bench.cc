@@ -25,6 +25,10 @@ class EmbreeMesh {
       : count_(scene.vertices.size()) {
     scene_ = rtcNewScene(device);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
+    // Only a scene of low quality keeps a tree a mesh; others build everything at each commit.
+    if (quality != RTC_BUILD_QUALITY_MEDIUM) {
+      rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
+    }
     geometry_ = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry_, quality);
     vertices_ = static_cast<float*>(rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0,

@@ -166,6 +166,63 @@ TEST_CASE("what is not moved leaves a built tree as it is, on any number of thre
   }
 }
 
+TEST_CASE("meshes of floats, which take a shorter way") {
+  Random random(14);
+  Shapes shapes(30);
+  const auto input_of = [](const std::vector<float>& vertices, const Shapes& shape) {
+    GeometryInput input;
+    input.AddTriangles(vertices, std::span(shape.indices).first(999));
+    input.AddTriangles(vertices, std::span(shape.indices).subspan(999));
+    return input;
+  };
+  const auto floats = [&] {
+    return std::vector<float>(shapes.vertices.begin(), shapes.vertices.end());
+  };
+  std::vector<float> vertices = floats();
+  auto built = Geometry::Build(input_of(vertices, shapes));
+  REQUIRE(built);
+  Geometry& geometry = built.value();
+  const auto update = [&](Updated wanted) {
+    const auto updated = geometry.Update(input_of(vertices, shapes));
+    REQUIRE(updated);
+    CHECK(updated.value() == wanted);
+    CheckLikeBuilt(geometry, input_of(vertices, shapes));
+  };
+  for (int step = 0; step < 4; ++step) {
+    shapes.Move(random, 0.02);
+    vertices = floats();
+    update(Updated::kRefit);
+  }
+  // A sliver has an area all the same.
+  for (int axis = 0; axis < 3; ++axis) {
+    vertices[3 + axis] = (vertices[axis] + vertices[93 + axis]) / 2;
+  }
+  update(Updated::kRefit);
+  vertices = floats();
+  // Nothing left of one triangle; another scale; a giant.
+  std::copy_n(vertices.begin(), 3, vertices.begin() + 3);
+  update(Updated::kRebuilt);
+  update(Updated::kRefit);
+  vertices = floats();
+  update(Updated::kRebuilt);
+  for (float& x : vertices) x *= 1e-20f;
+  update(Updated::kRefit);
+  vertices = floats();
+  vertices[0] = 1e13f;
+  REQUIRE(geometry.Update(input_of(vertices, shapes)));
+  CheckLikeBuilt(geometry, input_of(vertices, shapes));
+  vertices = floats();
+  REQUIRE(geometry.Update(input_of(vertices, shapes)));
+  CheckLikeBuilt(geometry, input_of(vertices, shapes));
+  const Hits<float> before = HitsOf(geometry, Target::Scalar());
+  vertices[7] = std::numeric_limits<float>::infinity();
+  CHECK(!geometry.Update(input_of(vertices, shapes)));
+  vertices = floats();
+  shapes.indices[5] = 1000000;
+  CHECK(!geometry.Update(input_of(vertices, shapes)));
+  CHECK(HitsOf(geometry, Target::Scalar()) == before);
+}
+
 TEST_CASE("the tree is kept as long as it is good enough") {
   Random random(12);
   Shapes shapes(40);

@@ -14,6 +14,7 @@
 #include "src/bvh/geometry_data.h"
 #include "src/bvh/geometry_scale.h"
 #include "src/bvh/primitive_index.h"
+#include "src/bvh/refit_meshes.h"
 
 namespace sheaf {
 
@@ -61,6 +62,10 @@ struct GeometryAccess {
   static Result<FlatInput> Flatten(const GeometryInput& input, int threads) {
     return FlattenTo<float>(input, {.threads = threads});
   }
+
+  // The meshes, where the input is nothing but meshes of floats without normals, whose arrays are
+  // whole; else none.
+  static std::vector<bvh::FloatMesh> PlainMeshes(const GeometryInput& input);
 
   // A class of its own: clang 14 looks at an alias's access from where it is used.
   template <typename Real>

@@ -1,10 +1,6 @@
 #include "src/bvh/refit_tree.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "src/bvh/find_split.h"
@@ -14,18 +10,6 @@
 
 namespace sheaf::bvh {
 namespace {
-
-constexpr float kMax = std::numeric_limits<float>::max();
-constexpr std::uint32_t kBlock = 256;  // nodes a task
-
-// Calls work(first, end, block) for blocks of [0, count).
-template <typename Work>
-void ForBlocks(std::uint32_t count, const Work& work) {
-  oneapi::tbb::parallel_for(0u, (count + kBlock - 1) / kBlock, [&](std::uint32_t block) {
-    const std::uint32_t first = block * kBlock;
-    work(first, std::min(first + kBlock, count), block);
-  });
-}
 
 // Around primitives: of all, and of all but giants.
 struct Extents {
@@ -63,34 +47,6 @@ Box4 RefitLeaf(std::uint32_t leaf, const Arrays& arrays, const GeometryView<Real
     bounds.Include(BoxOf(box));
   }
   return bounds;
-}
-
-Box4 ChildBox(const TreeNode& node, std::uint32_t child) {
-  Box4 box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = node.bounds[axis][child];
-    box.upper[axis] = node.bounds[3 + axis][child];
-  }
-  return box;
-}
-
-void StoreChild(const Box4& box, std::uint32_t child, TreeNode& node) {
-  for (int axis = 0; axis < 3; ++axis) {
-    node.bounds[axis][child] = box.lower[axis];
-    node.bounds[3 + axis][child] = box.upper[axis];
-  }
-}
-
-// Absent children come last.
-std::uint32_t CountChildren(const TreeNode& node) {
-  const auto* const end = std::find(node.child, node.child + kTreeWidth, kNoChild);
-  return static_cast<std::uint32_t>(end - node.child);
-}
-
-Box4 BoxOfNode(const TreeNode& node) {
-  Box4 box;
-  for (std::uint32_t i = 0; i < CountChildren(node); ++i) box.Include(ChildBox(node, i));
-  return box;
 }
 
 // Half the surface, in double, where no extent overflows; 0 of a giant's.
@@ -147,11 +103,24 @@ bool IsTreeOver(const GeometryView<Real>& geometry, std::uint32_t hittable,
   return true;
 }
 
+void RefitNodes(std::uint32_t count, TreeNode* nodes) {
+  // Every node comes before its children.
+  for (std::uint32_t i = count; i-- > 0;) {
+    for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
+      const std::uint32_t child = nodes[i].child[slot];
+      if (!IsLeaf(child)) StoreChild(BoxOfNode(nodes[child]), slot, nodes[i]);
+    }
+  }
+  ForNodes(count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
+    for (std::uint32_t i = first; i < end; ++i) OrderChildren(nodes[i], CountChildren(nodes[i]));
+  });
+}
+
 template <typename Real>
 void RefitTree(const GeometryView<Real>& geometry, const PlacesById& places, Tree<Real>& tree) {
   TreeNode* const nodes = tree.nodes.data();
-  std::vector<Extents> extents((tree.node_count + kBlock - 1) / kBlock);
-  ForBlocks(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
+  std::vector<Extents> extents((tree.node_count + kNodesATask - 1) / kNodesATask);
+  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
     for (std::uint32_t i = first; i < end; ++i) {
       for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
         const std::uint32_t child = nodes[i].child[slot];
@@ -165,16 +134,7 @@ void RefitTree(const GeometryView<Real>& geometry, const PlacesById& places, Tre
       }
     }
   });
-  // Every node comes before its children.
-  for (std::uint32_t i = tree.node_count; i-- > 0;) {
-    for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-      const std::uint32_t child = nodes[i].child[slot];
-      if (!IsLeaf(child)) StoreChild(BoxOfNode(nodes[child]), slot, nodes[i]);
-    }
-  }
-  ForBlocks(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
-    for (std::uint32_t i = first; i < end; ++i) OrderChildren(nodes[i], CountChildren(nodes[i]));
-  });
+  RefitNodes(tree.node_count, nodes);
   Extents whole;
   for (const Extents& part : extents) whole.Include(part);
   tree.SetBounds(whole.all, whole.others);
@@ -183,8 +143,8 @@ void RefitTree(const GeometryView<Real>& geometry, const PlacesById& places, Tre
 template <typename Real>
 double CostOfTree(const Tree<Real>& tree) {
   const TreeNode* const nodes = tree.nodes.data();
-  std::vector<double> costs((tree.node_count + kBlock - 1) / kBlock);
-  ForBlocks(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
+  std::vector<double> costs((tree.node_count + kNodesATask - 1) / kNodesATask);
+  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
     for (std::uint32_t i = first; i < end; ++i) {
       for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
         const std::uint32_t child = nodes[i].child[slot];

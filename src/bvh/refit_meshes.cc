@@ -1,0 +1,216 @@
+#include "src/bvh/refit_meshes.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "src/bvh/primitive_box.h"
+#include "src/bvh/refit_tree.h"
+#include "src/bvh/round_outward.h"
+#include "src/core/has_area.h"
+
+namespace sheaf::bvh {
+namespace {
+
+constexpr std::size_t kNumbersATask = 1 << 16;
+// Coordinates below this are scaled by nothing, and their grown boxes are no giants'.
+constexpr float kModerate = 0x1p38f;
+constexpr float kCertainArea = 0x1p-90f;  // scales nothing either, computed in float
+constexpr double kLeastArea = 0x1p-100;   // likewise, in double
+constexpr float kCertainPart = 0x1p-20f;  // of the products: far more than float rounds away
+
+// Whether is_sound(first, end) holds of all parts of [0, count).
+template <typename IsSound>
+bool AllSound(std::size_t count, const IsSound& is_sound) {
+  std::atomic<bool> all = true;
+  oneapi::tbb::parallel_for(std::size_t{0}, (count + kNumbersATask - 1) / kNumbersATask,
+                            [&](std::size_t task) {
+                              const std::size_t first = task * kNumbersATask;
+                              if (!is_sound(first, std::min(first + kNumbersATask, count)))
+                                all = false;
+                            });
+  return all;
+}
+
+Float4 Rotated(Float4 v) { return __builtin_shuffle(v, Int4{1, 2, 0, 3}); }
+Float4 Magnitude(Float4 v) { return Max(v, -v); }
+
+// A vertex with a fourth number that is nothing.
+Float4 VertexAt(const float* from) { return Float4{from[0], from[1], from[2], 0}; }
+
+// Whether rays can hit the triangle as it is. True where in doubt would be the exception.
+bool HasPlainArea(const Float4 (&vertex)[3]) {
+  const Float4 a = vertex[1] - vertex[0], b = vertex[2] - vertex[0];
+  const Float4 one = a * Rotated(b), other = Rotated(a) * b;
+  const Float4 area = Magnitude(one - other);
+  const Float4 least = Max((Magnitude(one) + Magnitude(other)) * kCertainPart, Set4(kCertainArea));
+  const Int4 is_certain = area > least;
+  if (is_certain[0] | is_certain[1] | is_certain[2]) return true;
+  double exact[3][3];
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) exact[k][axis] = static_cast<double>(vertex[k][axis]);
+  }
+  return HasArea(exact) && LargestArea(exact) >= kLeastArea;
+}
+
+// As PrimitiveBox has it, of what lies within a box.
+Box4 Grown(const Box4& box) {
+  Box4 grown;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = static_cast<double>(box.lower[axis]);
+    const double high = static_cast<double>(box.upper[axis]);
+    const double growth = static_cast<double>(kBoxGrowth) * (high - low);
+    grown.lower[axis] = RoundDown(low - growth) + 0.0f;
+    grown.upper[axis] = RoundUp(high + growth) + 0.0f;
+  }
+  return grown;
+}
+
+Box4 BoxAround(const Float4 (&vertex)[3]) {
+  Box4 box;
+  for (const Float4 v : vertex) box.Include(v, v);
+  return box;
+}
+
+class MeshLeaves {
+ public:
+  MeshLeaves(const std::vector<FloatMesh>& meshes, Tree<float>& tree)
+      : meshes_(meshes), blocks_(tree.of(PrimitiveKind::kTriangle)) {}
+
+  // Writes a leaf's triangles and its box; false where one has no plain area.
+  bool Refit(std::uint32_t leaf, Box4& box) {
+    const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
+    float* const to = blocks_.fields.data() + std::size_t{9} * first;
+    Box4 bounds;
+    bool is_plain = true;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Float4 vertex[3];
+      Load(blocks_.id.data()[first + i], vertex);
+      is_plain &= HasPlainArea(vertex);
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        bounds.Include(vertex[k], vertex[k]);
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+          to[(3 * k + axis) * count + i] = vertex[k][axis];
+        }
+      }
+    }
+    box = Grown(bounds);
+    return is_plain;
+  }
+
+  // Around a leaf's triangles, each of them grown.
+  Box4 ExactBox(std::uint32_t leaf) const {
+    Box4 box;
+    for (std::uint32_t i = 0; i < LeafCount(leaf); ++i) {
+      Float4 vertex[3];
+      Load(blocks_.id.data()[LeafFirst(leaf) + i], vertex);
+      box.Include(Grown(BoxAround(vertex)));
+    }
+    return box;
+  }
+
+ private:
+  void Load(std::uint32_t id, Float4 (&vertex)[3]) const {
+    const FloatMesh* mesh = meshes_.data();
+    if (meshes_.size() > 1) {
+      mesh = &*std::prev(
+          std::upper_bound(meshes_.begin(), meshes_.end(), id,
+                           [](std::uint32_t i, const FloatMesh& one) { return i < one.first; }));
+    }
+    const std::uint32_t* const index = mesh->indices.data() + std::size_t{3} * (id - mesh->first);
+    for (int k = 0; k < 3; ++k) {
+      vertex[k] = VertexAt(mesh->vertices.data() + std::size_t{3} * index[k]);
+    }
+  }
+
+  const std::vector<FloatMesh>& meshes_;
+  PrimitiveBlocks<float>& blocks_;
+};
+
+// What triangles reach along one axis, each of them grown: of leaves' boxes, which may be larger,
+// only those are looked into that could reach further.
+class ReachFinder {
+ public:
+  ReachFinder(const Tree<float>& tree, const MeshLeaves& leaves)
+      : nodes_(tree.nodes.data()), leaves_(leaves) {}
+
+  // The lowest of bound `row` of the nodes: below 3 a lower one, else an upper one times -1.
+  float Lowest(int row) const {
+    float best = std::numeric_limits<float>::infinity();
+    Look(0, row, best);
+    return best;
+  }
+
+ private:
+  void Look(std::uint32_t index, int row, float& best) const {
+    const TreeNode& node = nodes_[index];
+    for (std::uint32_t slot = 0; slot < CountChildren(node); ++slot) {
+      const float bound = node.bounds[row][slot];
+      if (!((row < 3 ? bound : -bound) < best)) continue;
+      const std::uint32_t child = node.child[slot];
+      if (!IsLeaf(child)) {
+        Look(child, row, best);
+        continue;
+      }
+      const Box4 box = leaves_.ExactBox(child);
+      best = std::min(best, row < 3 ? box.lower[row] : -box.upper[row - 3]);
+    }
+  }
+
+  const TreeNode* nodes_;
+  const MeshLeaves& leaves_;
+};
+
+}  // namespace
+
+bool AreModerate(const std::vector<FloatMesh>& meshes) {
+  return std::all_of(meshes.begin(), meshes.end(), [](const FloatMesh& mesh) {
+    const auto below = static_cast<std::uint32_t>(
+        std::min<std::size_t>(mesh.vertices.size() / 3, std::numeric_limits<std::uint32_t>::max()));
+    return AllSound(mesh.vertices.size(),
+                    [&](std::size_t i, std::size_t end) {
+                      bool is_moderate = true;
+                      for (; i < end; ++i) is_moderate &= std::abs(mesh.vertices[i]) < kModerate;
+                      return is_moderate;
+                    }) &&
+           AllSound(mesh.indices.size(), [&](std::size_t i, std::size_t end) {
+             std::uint32_t largest = 0;
+             for (; i < end; ++i) largest = std::max(largest, mesh.indices[i]);
+             return largest < below;
+           });
+  });
+}
+
+bool RefitMeshes(const std::vector<FloatMesh>& meshes, Tree<float>& tree) {
+  TreeNode* const nodes = tree.nodes.data();
+  MeshLeaves leaves(meshes, tree);
+  std::atomic<bool> is_plain = true;
+  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
+    bool are_plain = true;
+    for (std::uint32_t i = first; i < end; ++i) {
+      for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
+        const std::uint32_t child = nodes[i].child[slot];
+        if (!IsLeaf(child)) continue;
+        Box4 box;
+        are_plain &= leaves.Refit(child, box);
+        StoreChild(box, slot, nodes[i]);
+      }
+    }
+    if (!are_plain) is_plain = false;
+  });
+  if (!is_plain) return false;
+  RefitNodes(tree.node_count, nodes);
+  Box4 all;
+  const ReachFinder reach(tree, leaves);
+  for (int axis = 0; axis < 3; ++axis) {
+    all.lower[axis] = reach.Lowest(axis);
+    all.upper[axis] = -reach.Lowest(3 + axis);
+  }
+  tree.SetBounds(all, all);
+  return true;
+}
+
+}  // namespace sheaf::bvh
