@@ -2,37 +2,49 @@
 
 #include <limits>
 
+#include "src/bvh/float4.h"
+
 namespace sheaf::bvh {
+namespace {
+
+// By octant.
+struct Octants {
+  Float4 keys[2];
+};
+
+}  // namespace
 
 void OrderChildren(TreeNode& node, std::uint32_t count) {
   constexpr float kMax = std::numeric_limits<float>::max();
-  float center[3][kTreeWidth];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+  constexpr Float4 kX = {1, -1, 1, -1}, kY = {1, 1, -1, -1};
+  Octants child[kTreeWidth];
+  for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
+    float center[3];
+    for (int axis = 0; axis < 3; ++axis) {
       // An eighth of the sum, so that the sum of three of them is finite.
-      center[axis][i] = node.bounds[axis][i] * 0.125f + node.bounds[3 + axis][i] * 0.125f;
+      center[axis] = node.bounds[axis][i] * 0.125f + node.bounds[3 + axis][i] * 0.125f;
     }
+    const Float4 across = kX * center[0] + kY * center[1];
+    child[i].keys[0] = i < count ? across + Set4(center[2]) : Set4(kMax);
+    child[i].keys[1] = i < count ? across - Set4(center[2]) : Set4(kMax);
   }
-  for (std::uint32_t octant = 0; octant < 8; ++octant) {
-    const float x = octant & 1 ? -1.0f : 1.0f;
-    const float y = octant & 2 ? -1.0f : 1.0f;
-    const float z = octant & 4 ? -1.0f : 1.0f;
-    float key[kTreeWidth];
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-      const float along = x * center[0][i] + y * center[1][i] + z * center[2][i];
-      key[i] = i < count ? along : kMax;
-    }
+  for (int half = 0; half < 2; ++half) {
     // A child's rank is how many come before it.
-    std::uint32_t rank[kTreeWidth] = {};
-    for (std::uint32_t j = 0; j < kTreeWidth; ++j) {
-      for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-        rank[i] +=
-            static_cast<std::uint32_t>(key[j] < key[i]) |
-            (static_cast<std::uint32_t>(key[j] == key[i]) & static_cast<std::uint32_t>(j < i));
+    Int4 rank[kTreeWidth];
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(kTreeWidth); ++i) {
+      rank[i] = Int4{i, i, i, i};
+      for (std::int32_t j = 0; j < i; ++j) {
+        // -1 where the later one comes first, though it stands behind.
+        const Int4 swaps = child[i].keys[half] < child[j].keys[half];
+        rank[i] += swaps;
+        rank[j] -= swaps;
       }
     }
-    node.order[octant] = 0;
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) node.order[octant] |= i << (4 * rank[i]);
+    for (int octant = 0; octant < 4; ++octant) {
+      std::uint32_t order = 0;
+      for (std::uint32_t i = 0; i < kTreeWidth; ++i) order |= i << (4 * rank[i][octant]);
+      node.order[4 * half + octant] = order;
+    }
   }
 }
 

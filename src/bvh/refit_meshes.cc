@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "src/bvh/primitive_box.h"
@@ -22,15 +23,30 @@ constexpr float kCertainArea = 0x1p-90f;  // scales nothing either, computed in 
 constexpr double kLeastArea = 0x1p-100;   // likewise, in double
 constexpr float kCertainPart = 0x1p-20f;  // of the products: far more than float rounds away
 
-// Whether is_sound(first, end) holds of all parts of [0, count).
-template <typename IsSound>
-bool AllSound(std::size_t count, const IsSound& is_sound) {
+// Whether all lanes of are_sound hold of four numbers at a time, whatever their type. The last four
+// may be looked at twice; of fewer than four the first stands for those that are missing.
+template <typename Number, typename AreSound>
+bool AllSound(std::span<const Number> numbers, const AreSound& are_sound) {
+  static_assert(sizeof(Number) == sizeof(float));
+  const auto load = [&](std::size_t i) {
+    Float4 v;
+    std::memcpy(&v, numbers.data() + i, sizeof(v));
+    return v;
+  };
+  const std::size_t count = numbers.size();
+  if (count < 4) {
+    Number few[4] = {numbers[0], numbers[0], numbers[0], numbers[0]};
+    std::copy(numbers.begin(), numbers.end(), few);
+    return AllSound(std::span<const Number>(few), are_sound);
+  }
   std::atomic<bool> all = true;
   oneapi::tbb::parallel_for(std::size_t{0}, (count + kNumbersATask - 1) / kNumbersATask,
                             [&](std::size_t task) {
-                              const std::size_t first = task * kNumbersATask;
-                              if (!is_sound(first, std::min(first + kNumbersATask, count)))
-                                all = false;
+                              std::size_t i = task * kNumbersATask;
+                              const std::size_t end = std::min(i + kNumbersATask, count);
+                              Int4 sound = are_sound(load(end - 4));
+                              for (; i + 4 <= end; i += 4) sound &= are_sound(load(i));
+                              if (!(sound[0] & sound[1] & sound[2] & sound[3])) all = false;
                             });
   return all;
 }
@@ -38,8 +54,11 @@ bool AllSound(std::size_t count, const IsSound& is_sound) {
 Float4 Rotated(Float4 v) { return __builtin_shuffle(v, Int4{1, 2, 0, 3}); }
 Float4 Magnitude(Float4 v) { return Max(v, -v); }
 
-// A vertex with a fourth number that is nothing.
-Float4 VertexAt(const float* from) { return Float4{from[0], from[1], from[2], 0}; }
+// A vertex and, where there is one, the number after it.
+Float4 VertexAt(std::span<const float> numbers, std::size_t first) {
+  const float* const from = numbers.data() + first;
+  return first + 4 <= numbers.size() ? Load4(from) : Float4{from[0], from[1], from[2], 0};
+}
 
 // Whether rays can hit the triangle as it is. True where in doubt would be the exception.
 bool HasPlainArea(const Float4 (&vertex)[3]) {
@@ -122,7 +141,7 @@ class MeshLeaves {
     }
     const std::uint32_t* const index = mesh->indices.data() + std::size_t{3} * (id - mesh->first);
     for (int k = 0; k < 3; ++k) {
-      vertex[k] = VertexAt(mesh->vertices.data() + std::size_t{3} * index[k]);
+      vertex[k] = VertexAt(mesh->vertices, std::size_t{3} * index[k]);
     }
   }
 
@@ -168,18 +187,15 @@ class ReachFinder {
 
 bool AreModerate(const std::vector<FloatMesh>& meshes) {
   return std::all_of(meshes.begin(), meshes.end(), [](const FloatMesh& mesh) {
-    const auto below = static_cast<std::uint32_t>(
-        std::min<std::size_t>(mesh.vertices.size() / 3, std::numeric_limits<std::uint32_t>::max()));
-    return AllSound(mesh.vertices.size(),
-                    [&](std::size_t i, std::size_t end) {
-                      bool is_moderate = true;
-                      for (; i < end; ++i) is_moderate &= std::abs(mesh.vertices[i]) < kModerate;
-                      return is_moderate;
-                    }) &&
-           AllSound(mesh.indices.size(), [&](std::size_t i, std::size_t end) {
-             std::uint32_t largest = 0;
-             for (; i < end; ++i) largest = std::max(largest, mesh.indices[i]);
-             return largest < below;
+    const auto below = static_cast<std::int32_t>(
+        std::min<std::size_t>(mesh.vertices.size() / 3, std::numeric_limits<std::int32_t>::max()));
+    const bool has_numbers = AllSound(mesh.vertices, [](Float4 v) {
+      return Int4{v > Set4(-kModerate)} & Int4{v < Set4(kModerate)};
+    });
+    return has_numbers && AllSound(mesh.indices, [&](Float4 v) {
+             Int4 index;
+             std::memcpy(&index, &v, sizeof(index));
+             return Int4{index >= Int4{}} & Int4{index < Int4{below, below, below, below}};
            });
   });
 }
