@@ -17,16 +17,21 @@ struct Octants {
 void OrderChildren(TreeNode& node, std::uint32_t count) {
   constexpr float kMax = std::numeric_limits<float>::max();
   constexpr Float4 kX = {1, -1, 1, -1}, kY = {1, 1, -1, -1};
+  static_assert(kTreeWidth == 8);
+  Float4 center[3][2];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int half = 0; half < 2; ++half) {
+      // An eighth of the sum, so that the sum of three of them is finite.
+      center[axis][half] = Load4(&node.bounds[axis][4 * half]) * 0.125f +
+                           Load4(&node.bounds[3 + axis][4 * half]) * 0.125f;
+    }
+  }
   Octants child[kTreeWidth];
   for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-    float center[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      // An eighth of the sum, so that the sum of three of them is finite.
-      center[axis] = node.bounds[axis][i] * 0.125f + node.bounds[3 + axis][i] * 0.125f;
-    }
-    const Float4 across = kX * center[0] + kY * center[1];
-    child[i].keys[0] = i < count ? across + Set4(center[2]) : Set4(kMax);
-    child[i].keys[1] = i < count ? across - Set4(center[2]) : Set4(kMax);
+    const auto along = [&](int axis) { return center[axis][i / 4][i % 4]; };
+    const Float4 across = kX * along(0) + kY * along(1);
+    child[i].keys[0] = i < count ? across + Set4(along(2)) : Set4(kMax);
+    child[i].keys[1] = i < count ? across - Set4(along(2)) : Set4(kMax);
   }
   for (int half = 0; half < 2; ++half) {
     // A child's rank is how many come before it.
