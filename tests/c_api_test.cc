@@ -120,6 +120,37 @@ struct HitLists {
   HitArrays arrays() { return {t.data(), primitive.data(), object.data(), u.data(), v.data()}; }
 };
 
+TEST_CASE("an update has the hits of a build of C++") {
+  Soup soup;
+  const RayLists rays;
+  GeometryOwner in_c;
+  soup.BuildInC(in_c);
+  for (float& x : soup.vertices) x += x > 0 ? 0.01f : -0.01f;
+  for (const bool is_rebuilt : {false, true}) {
+    InputOwner input;
+    REQUIRE(sheaf_geometry_input_create(&input.handle) == SHEAF_OK);
+    const sheaf_triangles mesh = soup.mesh();
+    REQUIRE(sheaf_add_triangles(input.handle, &mesh, nullptr) == SHEAF_OK);
+    REQUIRE(sheaf_add_spheres(input.handle, soup.spheres.data(), 40, 0, nullptr) == SHEAF_OK);
+    REQUIRE(sheaf_add_disks(input.handle, soup.disks.data(), 40, 0, nullptr) == SHEAF_OK);
+    int32_t rebuilt = 7;
+    REQUIRE(sheaf_geometry_update(in_c.handle, input.handle, nullptr, &rebuilt) == SHEAF_OK);
+    CHECK(rebuilt == (is_rebuilt ? 1 : 0));
+    HitLists expected, found;
+    REQUIRE(TraceClosest(soup.Build(), rays.arrays(), kCount, expected.arrays()));
+    const sheaf_rays batch = rays.in_c();
+    const sheaf_hits hits = found.in_c();
+    REQUIRE(sheaf_trace_closest(in_c.handle, &batch, &hits, nullptr) == SHEAF_OK);
+    CHECK(found == expected);
+    soup.indices.resize(270);
+    sheaf_update_options options = SHEAF_UPDATE_OPTIONS_INIT;
+    options.rebuild_above = 0.5;
+    CHECK(sheaf_geometry_update(in_c.handle, input.handle, &options, nullptr) == SHEAF_USAGE);
+    CHECK(sheaf_geometry_update(nullptr, input.handle, nullptr, nullptr) == SHEAF_USAGE);
+    CHECK(sheaf_geometry_update(in_c.handle, nullptr, nullptr, nullptr) == SHEAF_USAGE);
+  }
+}
+
 TEST_CASE("hits and hit points are those of C++, on every target") {
   const Soup soup;
   const RayLists rays;

@@ -69,6 +69,23 @@ Result<Geometry> Build(const sheaf_geometry_input* input, const sheaf_build_opti
        .not_finite = options.skip_not_finite != 0 ? NotFinite::kSkipped : NotFinite::kRefused});
 }
 
+Status Update(sheaf_geometry* geometry, const sheaf_geometry_input* input,
+              const sheaf_update_options* given, std::int32_t* rebuilt) {
+  if (geometry == nullptr) return UsageError("geometry is NULL");
+  if (input == nullptr) return UsageError("input is NULL");
+  sheaf_update_options options = SHEAF_UPDATE_OPTIONS_INIT;
+  if (const Status taken = TakeIfGiven(given, "options", &options); !taken) return taken.error();
+  if (options.threads < 0) return UsageError("options: threads is below 0");
+  const Result<Updated> updated = geometry->geometry.Update(
+      input->input,
+      {.threads = options.threads,
+       .not_finite = options.skip_not_finite != 0 ? NotFinite::kSkipped : NotFinite::kRefused,
+       .rebuild_above = options.rebuild_above});
+  if (!updated) return updated.error();
+  if (rebuilt != nullptr) *rebuilt = updated.value() == Updated::kRebuilt;
+  return Done{};
+}
+
 Status GetStatistics(const sheaf_geometry* geometry, sheaf_geometry_statistics* statistics) {
   if (geometry == nullptr) return UsageError("geometry is NULL");
   const GeometryStatistics from = geometry->geometry.statistics();
@@ -153,6 +170,11 @@ sheaf_status sheaf_add_disks(sheaf_geometry_input* input, const float* disks, si
 sheaf_status sheaf_geometry_build(const sheaf_geometry_input* input,
                                   const sheaf_build_options* options, sheaf_geometry** geometry) {
   return Make(geometry, "geometry is NULL", [&] { return Build(input, options); });
+}
+
+sheaf_status sheaf_geometry_update(sheaf_geometry* geometry, const sheaf_geometry_input* input,
+                                   const sheaf_update_options* options, std::int32_t* rebuilt) {
+  return Guarded([&] { return Update(geometry, input, options, rebuilt); });
 }
 
 void sheaf_geometry_destroy(sheaf_geometry* geometry) { delete geometry; }

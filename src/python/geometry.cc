@@ -48,22 +48,44 @@ void AddObject(const py::tuple& object, GeometryInput* input, std::vector<py::ar
   }
 }
 
-template <typename Real>
-GeometryOf<Real> Build(const py::list& objects, int threads, const std::string& not_finite) {
+NotFinite NotFiniteOf(const std::string& name) {
+  return name == "skip" ? NotFinite::kSkipped : NotFinite::kRefused;
+}
+
+// Calls call(input) without the interpreter's lock.
+template <typename Real, typename Call>
+auto WithInput(const py::list& objects, const Call& call) {
   GeometryInput input;
   std::vector<py::array> kept;
   for (const py::handle object : objects) {
     AddObject<Real>(object.cast<py::tuple>(), &input, &kept);
   }
-  const BuildOptions options = {
-      .threads = threads,
-      .not_finite = not_finite == "skip" ? NotFinite::kSkipped : NotFinite::kRefused};
-  Result<GeometryOf<Real>> built = [&] {
+  auto made = [&] {
     const py::gil_scoped_release release;
-    return GeometryOf<Real>::Build(input, options);
+    return call(input);
   }();
-  if (!built) Check(built.error());
-  return std::move(built).value();
+  if (!made) Check(made.error());
+  return std::move(made).value();
+}
+
+template <typename Real>
+GeometryOf<Real> Build(const py::list& objects, int threads, const std::string& not_finite) {
+  return WithInput<Real>(objects, [&](const GeometryInput& input) {
+    return GeometryOf<Real>::Build(input,
+                                   {.threads = threads, .not_finite = NotFiniteOf(not_finite)});
+  });
+}
+
+// Whether the tree was built anew.
+template <typename Real>
+bool Update(GeometryOf<Real>& geometry, const py::list& objects, int threads,
+            const std::string& not_finite, double rebuild_above) {
+  const Updated updated = WithInput<Real>(objects, [&](const GeometryInput& input) {
+    return geometry.Update(input, {.threads = threads,
+                                   .not_finite = NotFiniteOf(not_finite),
+                                   .rebuild_above = rebuild_above});
+  });
+  return updated == Updated::kRebuilt;
 }
 
 template <typename Real>
@@ -162,6 +184,7 @@ void AddGeometryOf(py::module_& module, const std::string& number) {
       .def(py::init<Values<Real>, Values<Real>, int, const std::string&>());
   py::class_<Geometry> type(module, ("Geometry" + number).c_str());
   type.def(py::init(&Build<Real>))
+      .def("update", &Update<Real>)
       .def("statistics", &StatisticsOf<Real>)
       .def("bounds", [](const Geometry& g) { return py::make_tuple(g.lower(), g.upper()); })
       .def("first_primitives",

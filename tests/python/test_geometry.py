@@ -258,3 +258,20 @@ def test_other_threads_run_meanwhile():
         counter.join()
     assert seconds > 0.02
     assert ticks > 3
+
+
+@pytest.mark.parametrize("dtype", [numpy.float32, numpy.float64])
+def test_an_update_has_the_hits_of_a_new_geometry(dtype):
+    geometry = sheaf.Geometry(VERTICES, FACES, dtype=dtype)
+    moved = VERTICES + RANDOM.uniform(-0.01, 0.01, VERTICES.shape).astype(numpy.float32)
+    for faces, rebuilt in ((FACES, False), (FACES[:90], True)):
+        assert geometry.update(moved, faces) is rebuilt
+        fresh = sheaf.Geometry(moved, faces, dtype=dtype)
+        rays = ORIGINS.astype(dtype), DIRECTIONS.astype(dtype)
+        assert (geometry.closest(*rays).t == fresh.closest(*rays).t).all()
+        assert (geometry.bounds == fresh.bounds).all()
+    assert geometry.update(moved[::-1], faces, rebuild_above=numpy.inf) is False
+    with pytest.raises(sheaf.UsageError, match="rebuild_above"):
+        geometry.update(moved, faces, rebuild_above=0.5)
+    with pytest.raises(sheaf.UsageError, match="vertex 300 of 300"):
+        geometry.update(moved, [[0, 1, 300]])

@@ -15,7 +15,7 @@ from ._sheaf import UsageError
 
 
 class Geometry(Queries):
-    """Triangles, spheres and disks, with a tree over them. It never changes.
+    """Triangles, spheres and disks, with a tree over them. Only `update` changes it.
 
     vertices: (V, 3), finite. faces: (F, 3) whole numbers below V. normals: (V, 3), for `Hits.normal`.
     spheres: (S, 4), center and radius >= 0. disks: (D, 7), center, radius >= 0 and normal.
@@ -46,6 +46,46 @@ class Geometry(Queries):
         kinds: Dict[str, Any] = {"float32": _sheaf.GeometryFloat, "float64": _sheaf.GeometryDouble}
         if self._dtype.name not in kinds:
             raise UsageError(f"dtype: {self._dtype}, not float32 or float64")
+        objects = self._objects(vertices, faces, normals, spheres, disks, threads, not_finite)
+        self._core = kinds[self._dtype.name](objects, threads, not_finite)
+
+    def update(
+        self,
+        vertices: Optional[ArrayLike] = None,
+        faces: Optional[ArrayLike] = None,
+        *,
+        normals: Optional[ArrayLike] = None,
+        spheres: Optional[ArrayLike] = None,
+        disks: Optional[ArrayLike] = None,
+        threads: int = 0,
+        not_finite: str = "refuse",
+        rebuild_above: float = 1.5,
+    ) -> bool:
+        """Becomes what Geometry(...) of the same arguments is: the same hits, to the bit.
+
+        Where primitives have moved and are otherwise as before, the tree is fitted to them in a part
+        of the time of a build. Returns whether it was built anew instead, because other primitives
+        came, or because it cost more than rebuild_above (1 or more) times as much as the last that
+        was built.
+
+        No other thread may use the geometry meanwhile. Hits that were found before keep what they
+        hold, but their points are not to be asked for afterwards. Raises UsageError as Geometry
+        does; the geometry then is as it was.
+        """
+        objects = self._objects(vertices, faces, normals, spheres, disks, threads, not_finite)
+        rebuilt: bool = self._core.update(objects, threads, not_finite, rebuild_above)
+        return rebuilt
+
+    def _objects(
+        self,
+        vertices: Optional[ArrayLike],
+        faces: Optional[ArrayLike],
+        normals: Optional[ArrayLike],
+        spheres: Optional[ArrayLike],
+        disks: Optional[ArrayLike],
+        threads: int,
+        not_finite: str,
+    ) -> List[Tuple[Any, ...]]:
         if not_finite not in ("refuse", "skip"):
             raise UsageError(f'not_finite: "{not_finite}", not "refuse" or "skip"')
         if threads < 0:
@@ -66,7 +106,7 @@ class Geometry(Queries):
             objects.append(("spheres", table_of("spheres", spheres, self._dtype, 4)))
         if disks is not None:
             objects.append(("disks", table_of("disks", disks, self._dtype, 7)))
-        self._core = kinds[self._dtype.name](objects, threads, not_finite)
+        return objects
 
     @property
     def dtype(self) -> numpy.dtype[Any]:
