@@ -91,7 +91,34 @@ const typename GeometryOf<Real>::Data& GeometryOf<Real>::data() const {
     }
   };
   static const Empty kEmpty;
-  return data_ ? *data_ : kEmpty;
+  if (data_) return *data_;
+  return kEmpty;
+}
+
+template <typename Real>
+void GeometryOf<Real>::Data::Take(FlatInputOf<Real>& flat) {
+  first = std::move(flat.first);
+  first_triangle = std::move(flat.first_triangle);
+  kind = std::move(flat.kind);
+  never_hit = flat.never_hit;
+  skipped = flat.skipped;
+  for (std::size_t k = 0; k < 9; ++k) {
+    normal[k / 3][k % 3] = std::move(flat.arrays.normal[k / 3][k % 3]);
+    normals[k] = normal[k / 3][k % 3].data();
+  }
+}
+
+template <typename Real>
+Result<std::unique_ptr<typename GeometryOf<Real>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<Real>& flat, Real scale, int threads) {
+  auto data = std::make_unique<typename GeometryOf<Real>::Data>();
+  data->scale = scale;
+  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), threads);
+  if (!tree) return tree.error();
+  data->tree = std::move(tree).value();
+  data->view = data->tree.view();
+  data->Take(flat);
+  return data;
 }
 
 template <typename Real>
@@ -100,21 +127,10 @@ Result<GeometryOf<Real>> GeometryOf<Real>::Build(const GeometryInput& input,
   Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(input, options);
   if (!flattened) return flattened.error();
   FlatInputOf<Real>& flat = flattened.value();
-  auto data = std::make_unique<Data>();
-  data->scale = Rescale(flat);
-  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), options.threads);
-  if (!tree) return tree.error();
-  data->tree = std::move(tree).value();
-  data->view = data->tree.view();
-  data->first = std::move(flat.first);
-  data->first_triangle = std::move(flat.first_triangle);
-  data->never_hit = flat.never_hit;
-  data->skipped = flat.skipped;
-  for (std::size_t k = 0; k < 9; ++k) {
-    data->normal[k / 3][k % 3] = std::move(flat.arrays.normal[k / 3][k % 3]);
-  }
+  auto data = GeometryAccess::BuildData(flat, Rescale(flat), options.threads);
+  if (!data) return data.error();
   GeometryOf geometry;
-  geometry.data_ = std::move(data);
+  geometry.data_ = std::move(data).value();
   return geometry;
 }
 
@@ -140,7 +156,7 @@ GeometryStatistics GeometryOf<Real>::statistics() const {
   statistics.nodes = tree.node_count;
   statistics.bytes = sizeof(*this) + sizeof(Data) + data().tree.bytes() +
                      9 * data().normal[0][0].size() * sizeof(Real) +
-                     2 * data().first.capacity() * sizeof(data().first[0]);
+                     3 * data().first.capacity() * sizeof(data().first[0]) + data().file_bytes;
   statistics.depth = DepthOf(tree.nodes, tree.node_count);
   for (std::uint32_t i = 0; i < tree.node_count; ++i) {
     for (const std::uint32_t child : tree.nodes[i].child) {
@@ -168,6 +184,10 @@ std::uint32_t GeometryOf<Real>::first_primitive(std::uint32_t object) const {
   return data().first[object];
 }
 
+template Result<std::unique_ptr<GeometryOf<float>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<float>&, float, int);
+template Result<std::unique_ptr<GeometryOf<double>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<double>&, double, int);
 template class GeometryOf<float>;
 template class GeometryOf<double>;
 

@@ -3,6 +3,7 @@
 #define SHEAF_BVH_GEOMETRY_ACCESS_H_
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,12 +24,14 @@ struct FlatInputOf {
   GeometryArrays<Real> arrays;
   std::vector<std::uint32_t> first;           // primitive of each object; the last: number of all
   std::vector<std::uint32_t> first_triangle;  // of each object, among triangles
+  std::vector<PrimitiveKind> kind;            // of each object
   std::uint32_t never_hit = 0, skipped = 0;
   TriangleSizes sizes;
 };
 using FlatInput = FlatInputOf<float>;
 
 // What a Geometry owns. The arrays are dropped, but for normals: the tree holds all that rays need.
+// Where the geometry is mapped, view and normals show the file, and the arrays are empty.
 template <typename Real>
 struct GeometryOf<Real>::Data {
   Tree<Real> tree;  // of coordinates times scale
@@ -36,9 +39,17 @@ struct GeometryOf<Real>::Data {
   Real scale = 1;                                // a power of two
   std::vector<std::uint32_t> first{0};           // see FlatInputOf
   std::vector<std::uint32_t> first_triangle{0};  // likewise
+  std::vector<PrimitiveKind> kind;               // likewise
   std::uint32_t never_hit = 0, skipped = 0;
-  AlignedArray<Real> normal[3][3];  // by triangle; empty where no mesh has any
-  PrimitiveIndex<Real> index;       // made at its first use
+  AlignedArray<Real> normal[3][3];    // by triangle; empty where no mesh has any
+  const Real* normals[9] = {};        // the same by vertex and axis; null where no mesh has any
+  PrimitiveIndex<Real> index;         // made at its first use
+  double built_cost = -1;             // CostOfTree right after the build; below 0: not known yet
+  std::shared_ptr<const void> file;   // the mapping that is shown
+  std::size_t file_bytes = 0;         // of it
+
+  // Takes all that is in `flat` but what the tree was built from, which it must be of.
+  void Take(FlatInputOf<Real>& flat);
 };
 
 // Multiplies all lengths by the power of two that triangles are hit at, which it returns; marks and
@@ -47,6 +58,12 @@ template <typename Real>
 Real Rescale(FlatInputOf<Real>& flat);
 
 struct GeometryAccess {
+  // The data of a geometry of this input, which Rescale has scaled; consumes it. Fails as BuildTree
+  // does.
+  template <typename Real>
+  static Result<std::unique_ptr<typename GeometryOf<Real>::Data>> BuildData(
+      FlatInputOf<Real>& flat, Real scale, int threads);
+
   // Primitives of any kind but triangles, whose numbers are vertices and indices.
   static void Add(GeometryInput& input, PrimitiveKind kind, std::span<const float> fields);
 

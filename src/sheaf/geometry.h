@@ -23,6 +23,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sheaf/error.h"
@@ -108,6 +109,29 @@ struct BuildOptions {
   NotFinite not_finite = NotFinite::kRefused;
 };
 
+// Update builds the tree anew where moving has made rays so many times as dear as right after the
+// last build, by the surface area heuristic: boxes that overlap more are met more often.
+inline constexpr double kRebuildRatio = 1.5;
+
+struct UpdateOptions {
+  int threads = 0;  // as in BuildOptions, and so the next
+  NotFinite not_finite = NotFinite::kRefused;
+  // 0 always builds, infinity does not as long as a refit is possible.
+  double rebuild_ratio = kRebuildRatio;
+};
+
+// What an update did.
+enum class Updated {
+  kRefitted,  // the tree is the old one with new boxes
+  kRebuilt,   // built anew
+};
+
+// What Map looks at. A file that is only opened is read where rays need it.
+enum class MapCheck {
+  kAll,     // reads all of it: checksums, every index, and that boxes hold what is in them
+  kHeader,  // header and sizes alone, for a file that is known to be sound: takes no time
+};
+
 // What a geometry is made of, and takes.
 struct GeometryStatistics {
   std::uint32_t primitives;                 // in the tree, of all kinds
@@ -120,8 +144,9 @@ struct GeometryStatistics {
   std::size_t bytes;                   // of memory, all that the geometry holds
 };
 
-// Objects with a tree over their primitives; needs nothing of the input any more. Immutable, so
-// that any number of threads may use one; it can be moved, and is then empty.
+// Objects with a tree over their primitives; needs nothing of the input any more. Nothing but Update
+// and assignment changes one, so that any number of threads may use it; it can be moved, and is then
+// empty.
 template <typename Real>
 class GeometryOf {
  public:
@@ -148,6 +173,25 @@ class GeometryOf {
     return Build(input, BuildOptions{.threads = threads});
   }
 
+  // Makes the geometry that Build makes of `input`, with the same hits to the bit, whatever it was
+  // before. Where the objects have the same kinds and as many primitives as now, and the same of
+  // these can be hit, as when vertices move, the tree is kept and its boxes are fitted to them,
+  // which takes a fraction of a build. Fails as Build does, and the geometry is what it was before;
+  // so it is where memory runs out. No other call may use the geometry meanwhile, nor instances of
+  // it, which have to be built again after it: where pictures go on, build or update a second one.
+  SHEAF_API Result<Updated> Update(const GeometryInput& input, const UpdateOptions& options = {});
+
+  // Writes the geometry with its tree to a file, for Map. The old file or the whole new one is
+  // there, whatever happens. Fails with kInputOutput. docs/geometry.md has the format, which
+  // belongs to the version of Sheaf and the kind of machine.
+  SHEAF_API Status Save(const std::string& path) const;
+  // The geometry of a file that Save wrote: the same hits to the bit. The file is mapped read-only,
+  // and its pages shared with all that map it; it must not be written to meanwhile, but may be
+  // replaced by Save, renamed or removed. Fails with kInputOutput, the path and what is wrong where
+  // it cannot be read or is not such a file: cut off, damaged, of another version, of the other
+  // kind of numbers.
+  SHEAF_API static Result<GeometryOf> Map(const std::string& path, MapCheck check = MapCheck::kAll);
+
   // The smallest box around the primitives, up to a millionth of its size; lower > upper where
   // there are none. x, y, z; the largest float for what is larger.
   SHEAF_API std::array<float, 3> lower() const;
@@ -166,7 +210,7 @@ class GeometryOf {
   struct Data;
   const Data& data() const;
 
-  std::unique_ptr<const Data> data_;  // null: without objects
+  std::unique_ptr<Data> data_;  // null: without objects
 };
 using Geometry = GeometryOf<float>;
 using GeometryD = GeometryOf<double>;

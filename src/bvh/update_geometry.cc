@@ -1,0 +1,117 @@
+// From a geometry to that of other vertices, by way of the old tree where it is good enough.
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "src/bvh/build_tree.h"
+#include "src/bvh/geometry_access.h"
+#include "src/bvh/refit_tree.h"
+#include "src/core/parallel.h"
+
+namespace sheaf {
+namespace {
+
+template <typename Real>
+ObjectIndex IndexOfObjects(const FlatInputOf<Real>& flat) {
+  ObjectIndex objects{flat.first, {}};
+  PrimitiveCounts next;
+  for (std::size_t i = 0; i < flat.kind.size(); ++i) {
+    objects.index.push_back(next[flat.kind[i]]);
+    next[flat.kind[i]] += flat.first[i + 1] - flat.first[i];
+  }
+  return objects;
+}
+
+// A tree's arrays for one that only shows them.
+template <typename Real>
+Tree<Real> CopyOf(const Tree<Real>& bounds, const TreeView<Real>& view) {
+  Tree<Real> tree;
+  tree.node_count = view.node_count;
+  tree.nodes.AllocateForOverwrite(view.node_count, 0);
+  std::copy_n(view.nodes, view.node_count, tree.nodes.data());
+  for (std::uint32_t k = 0; k < kKindCount; ++k) {
+    const std::size_t count = view.blocks[k].count;
+    const std::size_t fields = FieldCountOf(static_cast<PrimitiveKind>(k)) * count;
+    tree.blocks[k].count = view.blocks[k].count;
+    tree.blocks[k].id.AllocateForOverwrite(count + kMaxLanes, kMaxLanes);
+    tree.blocks[k].fields.AllocateForOverwrite(fields + kMaxLanes, kMaxLanes);
+    std::copy_n(view.blocks[k].id, count, tree.blocks[k].id.data());
+  }
+  std::copy_n(bounds.all_lower, 3, tree.all_lower);
+  std::copy_n(bounds.all_upper, 3, tree.all_upper);
+  return tree;
+}
+
+// All of `old` but its tree, and what is known of that.
+template <typename Data, typename Real>
+std::unique_ptr<Data> WithTree(Data&& old, Tree<Real>&& tree) {
+  auto data = std::make_unique<Data>();
+  data->tree = std::move(tree);
+  data->view = data->tree.view();
+  data->scale = old.scale;
+  data->first = std::move(old.first);
+  data->first_triangle = std::move(old.first_triangle);
+  data->kind = std::move(old.kind);
+  data->never_hit = old.never_hit;
+  data->skipped = old.skipped;
+  for (std::size_t k = 0; k < 9; ++k) {
+    data->normal[k / 3][k % 3] = std::move(old.normal[k / 3][k % 3]);
+    data->normals[k] = old.normals[k];
+  }
+  return data;
+}
+
+}  // namespace
+
+template <typename Real>
+Result<Updated> GeometryOf<Real>::Update(const GeometryInput& input, const UpdateOptions& options) {
+  Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(
+      input, {.threads = options.threads, .not_finite = options.not_finite});
+  if (!flattened) return flattened.error();
+  FlatInputOf<Real>& flat = flattened.value();
+  const Real scale = Rescale(flat);
+  const auto rebuild = [&]() -> Result<Updated> {
+    auto built = GeometryAccess::BuildData(flat, scale, options.threads);
+    if (!built) return built.error();
+    data_ = std::move(built).value();
+    return Updated::kRebuilt;
+  };
+  const bool has_same_objects =
+      data_ && data_->first == flat.first && data_->kind == flat.kind && options.rebuild_ratio > 0;
+  if (!has_same_objects) return rebuild();
+  const ObjectIndex objects = IndexOfObjects(flat);
+  const GeometryView<Real> geometry = flat.arrays.view();
+  // Where all are in the tree and can be hit there is nothing to compare.
+  const std::uint32_t absent = flat.never_hit + flat.skipped;
+  const bool has_all = absent == 0 && data_->view.primitive_count() == flat.first.back();
+  if (!has_all && !HasSamePrimitives(data_->view, geometry, objects)) return rebuild();
+
+  if (data_->built_cost < 0) data_->built_cost = CostOfTree(data_->view);
+  Tree<Real> copy;
+  if (data_->file) copy = CopyOf(data_->tree, data_->view);
+  // From here on there is nothing that fails.
+  if (data_->file) data_->tree = std::move(copy);
+  data_->file.reset();
+  data_->file_bytes = 0;
+  RefitTree(geometry, objects, ThreadCount(options.threads), data_->tree);
+  data_->view = data_->tree.view();
+  data_->scale = scale;
+  data_->Take(flat);
+  if (!(CostOfTree(data_->view) > options.rebuild_ratio * data_->built_cost)) {
+    return Updated::kRefitted;
+  }
+  // The refitted tree is as right, so that it stays where there is no room for a better one.
+  try {
+    Result<Tree<Real>> better = BuildTree(geometry, options.threads);
+    if (!better) return better.error();
+    data_ = WithTree(std::move(*data_), std::move(better).value());
+  } catch (const std::bad_alloc&) {
+    return Updated::kRefitted;
+  }
+  return Updated::kRebuilt;
+}
+
+template Result<Updated> GeometryOf<float>::Update(const GeometryInput&, const UpdateOptions&);
+template Result<Updated> GeometryOf<double>::Update(const GeometryInput&, const UpdateOptions&);
+
+}  // namespace sheaf
