@@ -144,8 +144,9 @@ TEST_CASE("an update has the hits of a build of C++") {
     CHECK(found == expected);
     soup.indices.resize(270);
     sheaf_update_options options = SHEAF_UPDATE_OPTIONS_INIT;
-    options.rebuild_above = 0.5;
-    CHECK(sheaf_geometry_update(in_c.handle, input.handle, &options, nullptr) == SHEAF_USAGE);
+    options.rebuild_ratio = 0;
+    REQUIRE(sheaf_geometry_update(in_c.handle, input.handle, &options, &rebuilt) == SHEAF_OK);
+    CHECK(rebuilt == 1);
     CHECK(sheaf_geometry_update(nullptr, input.handle, nullptr, nullptr) == SHEAF_USAGE);
     CHECK(sheaf_geometry_update(in_c.handle, nullptr, nullptr, nullptr) == SHEAF_USAGE);
   }

@@ -1,319 +1,153 @@
-// `Geometry::Update`: what moves gets the hits and the bits of a fresh build.
+// A geometry whose vertices move: whatever it was before, its hits are those of a fresh build.
 #include <doctest/doctest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "random_scene.h"
+#include "random_rays.h"
+#include "same_geometry.h"
 #include "sheaf/geometry.h"
 #include "src/bvh/geometry_access.h"
-#include "targets.h"
+#include "src/bvh/refit_tree.h"
+#include "src/bvh/validate_tree.h"
 
 namespace sheaf {
 namespace {
 
-// A wavy grid with normals, spheres and disks, in order of `spheres_first` or not.
-struct Shapes {
-  std::vector<double> vertices, normals, spheres, disks;
-  std::vector<std::uint32_t> indices;
-
-  explicit Shapes(std::uint32_t side) {
-    for (std::uint32_t y = 0; y <= side; ++y) {
-      for (std::uint32_t x = 0; x <= side; ++x) {
-        vertices.insert(vertices.end(), {x * 0.5, std::sin(x * 0.7) * std::cos(y * 0.4), y * 0.5});
-        normals.insert(normals.end(), {0.1, 1, 0.2});
-      }
-    }
-    for (std::uint32_t y = 0; y < side; ++y) {
-      for (std::uint32_t x = 0; x < side; ++x) {
-        const std::uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1, d = c + 1;
-        indices.insert(indices.end(), {a, b, c, c, b, d});
-      }
-    }
-    for (int i = 0; i < 20; ++i) {
-      spheres.insert(spheres.end(), {i * 0.4, 1.5, i * 0.3, 0.3});
-      disks.insert(disks.end(), {i * 0.3, -1.5, i * 0.4, 0.5, 0.3, 1, 0.1});
-    }
-  }
-
-  void Move(Random& random, double by) {
-    for (double& x : vertices) x += Uniform(random, -by, by);
-    for (double& x : normals) x += Uniform(random, -0.1, 0.1);
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-      if (i % 4 < 3) spheres[i] += Uniform(random, -by, by);
-    }
-    for (std::size_t i = 0; i < disks.size(); ++i) {
-      if (i % 7 < 3) disks[i] += Uniform(random, -by, by);
-    }
-  }
-  void Scale(double factor) {
-    for (double& x : vertices) x *= factor;
-    for (double& x : spheres) x *= factor;
-    for (std::size_t i = 0; i < disks.size(); ++i) disks[i] *= i % 7 < 4 ? factor : 1;
-  }
-
-  GeometryInput Input() const {
-    GeometryInput input;
-    input.AddSpheres(spheres);
-    input.AddTriangles(vertices, indices, normals);
-    input.AddDisks(disks);
-    return input;
-  }
-};
+constexpr double kNever = std::numeric_limits<double>::infinity();  // builds anew
 
 template <typename Real>
-struct Hits {
-  std::vector<Real> t, u, v;
-  std::vector<std::uint32_t> primitive;
-  std::vector<std::uint32_t> occluded;
-  bool operator==(const Hits& other) const {
-    return std::memcmp(t.data(), other.t.data(), t.size() * sizeof(Real)) == 0 && u == other.u &&
-           v == other.v && primitive == other.primitive && occluded == other.occluded;
-  }
-};
-
-template <typename Real>
-Hits<Real> HitsOf(const GeometryOf<Real>& geometry, const Target& target) {
-  constexpr std::size_t kRays = 600;
-  Random random(3);
-  std::vector<Real> rays[6];
-  const std::array<float, 3> low = geometry.lower(), high = geometry.upper();
-  for (std::size_t i = 0; i < kRays; ++i) {
-    const bool has_size = low[0] <= high[0];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double a = has_size ? static_cast<double>(low[axis]) : -1;
-      const double b = has_size ? static_cast<double>(high[axis]) : 1;
-      const double from = Uniform(random, 2 * a - b, 2 * b - a), to = Uniform(random, a, b);
-      rays[axis].push_back(static_cast<Real>(from));
-      rays[3 + axis].push_back(static_cast<Real>(to - from));
-    }
-  }
-  RayArraysOf<Real> arrays;
-  arrays.origin_x = rays[0].data();
-  arrays.origin_y = rays[1].data();
-  arrays.origin_z = rays[2].data();
-  arrays.direction_x = rays[3].data();
-  arrays.direction_y = rays[4].data();
-  arrays.direction_z = rays[5].data();
-  Hits<Real> hits{std::vector<Real>(kRays), std::vector<Real>(kRays), std::vector<Real>(kRays),
-                  std::vector<std::uint32_t>(kRays), std::vector<std::uint32_t>(kRays)};
-  HitArraysOf<Real> to;
-  to.t = hits.t.data();
-  to.u = hits.u.data();
-  to.v = hits.v.data();
-  to.primitive = hits.primitive.data();
-  TraceOptionsOf<Real> options;
-  options.target = target;
-  REQUIRE(TraceClosest(geometry, arrays, kRays, to, options));
-  REQUIRE(TraceOccluded(geometry, arrays, kRays, hits.occluded.data(), options));
-  return hits;
+void CheckSound(const GeometryOf<Real>& geometry, const GeometryInput& input) {
+  auto flat = GeometryAccess::FlattenTo<Real>(input, {}).value();
+  Rescale(flat);
+  CHECK(FindTreeDefect(GeometryAccess::TreeOf(geometry), flat.arrays.view()) == "");
 }
 
-template <typename Real>
-void CheckLikeBuilt(const GeometryOf<Real>& updated, const GeometryInput& input) {
-  const auto built = GeometryOf<Real>::Build(input);
-  REQUIRE(built);
-  CHECK(updated.lower() == built.value().lower());
-  CHECK(updated.upper() == built.value().upper());
-  CHECK(updated.statistics().never_hit == built.value().statistics().never_hit);
-  CHECK(updated.statistics().primitives == built.value().statistics().primitives);
-  const Hits<Real> scalar = HitsOf(built.value(), Target::Scalar());
-  CHECK(HitsOf(updated, Target::Scalar()) == scalar);
-  ForEachTarget([&](Target target) { CHECK(HitsOf(updated, target) == scalar); });
+TEST_CASE_TEMPLATE("random moves give the hits of a fresh build", Real, float, double) {
+  Random random(23);
+  for (const std::uint32_t count : {1u, 3u, 40u, 900u}) {
+    RandomObjects<Real> objects(random, count);
+    auto geometry = GeometryOf<Real>::Build(objects.Input()).value();
+    for (int step = 0; step < 6; ++step) {
+      CAPTURE(step);
+      MoveObjects(random, step < 3 ? 0.05 : 4, objects);
+      const UpdateOptions options{.threads = 1 + step % 3, .rebuild_ratio = kNever};
+      CHECK(geometry.Update(objects.Input(), options).value() == Updated::kRefitted);
+      CheckSound(geometry, objects.Input());
+      CheckSame(geometry, GeometryOf<Real>::Build(objects.Input()).value(), random);
+    }
+  }
 }
 
-TEST_CASE_TEMPLATE("updates have the hits of a build", Real, float, double) {
+TEST_CASE("threads do not change a refitted tree") {
+  Random random(7);
+  RandomObjects<float> objects(random, 3000);
+  auto one = Geometry::Build(objects.Input()).value();
+  auto many = Geometry::Build(objects.Input()).value();
+  MoveObjects(random, 1, objects);
+  one.Update(objects.Input(), {.threads = 1, .rebuild_ratio = kNever}).value();
+  many.Update(objects.Input(), {.threads = 4, .rebuild_ratio = kNever}).value();
+  const TreeView<float>&a = GeometryAccess::TreeOf(one), &b = GeometryAccess::TreeOf(many);
+  REQUIRE(a.node_count == b.node_count);
+  REQUIRE(a.node_count > 600);
+  CHECK(std::memcmp(a.nodes, b.nodes, a.node_count * sizeof(TreeNode)) == 0);
+  CHECK(std::memcmp(a.lower, b.lower, sizeof(a.lower)) == 0);
+}
+
+TEST_CASE("a tree that has become dear is built anew, others are not") {
   Random random(11);
-  Shapes shapes(24);
-  auto built = GeometryOf<Real>::Build(shapes.Input());
-  REQUIRE(built);
-  GeometryOf<Real>& geometry = built.value();
-  int refits = 0, rebuilds = 0;
-  for (int step = 0; step < 12; ++step) {
-    // Near, then anywhere, then in other units.
-    shapes.Move(random, step % 4 == 3 ? 9 : 0.05);
-    if (step % 5 == 4) shapes.Scale(step == 4 ? 1e24 : 1e-24);
-    UpdateOptions options;
-    options.threads = 1 + step % 2;
-    const auto updated = geometry.Update(shapes.Input(), options);
-    REQUIRE(updated);
-    (updated.value() == Updated::kRefit ? refits : rebuilds) += 1;
-    CheckLikeBuilt(geometry, shapes.Input());
+  RandomObjects<float> objects(random, 2000);
+  auto geometry = Geometry::Build(objects.Input()).value();
+  const double built = CostOfTree(GeometryAccess::TreeOf(geometry));
+  CHECK(built > 1);
+  CHECK(geometry.Update(objects.Input()).value() == Updated::kRefitted);
+  CHECK(CostOfTree(GeometryAccess::TreeOf(geometry)) == built);
+  CHECK(geometry.Update(objects.Input(), {.rebuild_ratio = 0}).value() == Updated::kRebuilt);
+
+  // Small triangles that change places at random: the old tree is worth nothing.
+  for (std::size_t i = 0; i < objects.vertices.size(); ++i) {
+    objects.vertices[i] = objects.vertices[i % 3 + i / 9 * 9] + 0.01f * static_cast<float>(i % 7);
+    objects.bare[i] = objects.bare[i % 3 + i / 9 * 9] + 0.01f * static_cast<float>(i % 7);
   }
-  CHECK(refits >= 3);
-  CHECK(rebuilds >= 1);
+  geometry = Geometry::Build(objects.Input()).value();
+  for (std::size_t i = 0; i < objects.bare.size(); ++i) {
+    std::swap(objects.bare[i], objects.bare[objects.bare.size() - 9 - i / 9 * 9 + i % 9]);
+  }
+  for (std::size_t i = 0; i < objects.vertices.size() / 9; ++i) {
+    const double by = Uniform(random, -8, 8);
+    for (std::size_t k = 0; k < 9; ++k) objects.vertices[9 * i + k] += static_cast<float>(by);
+  }
+  CHECK(geometry.Update(objects.Input()).value() == Updated::kRebuilt);
+  CheckSame(geometry, Geometry::Build(objects.Input()).value(), random);
+  // What the ratio is of is the last build.
+  CHECK(geometry.Update(objects.Input()).value() == Updated::kRefitted);
 }
 
-TEST_CASE("what is not moved leaves a built tree as it is, on any number of threads") {
-  const Shapes shapes(60);
-  auto built = Geometry::Build(shapes.Input());
-  REQUIRE(built);
-  Geometry& geometry = built.value();
-  const TreeView<float>& tree = GeometryAccess::TreeOf(geometry);
-  const std::vector<TreeNode> before(tree.nodes, tree.nodes + tree.node_count);
-  REQUIRE(before.size() > 200);
-  for (const int threads : {1, 2}) {
-    UpdateOptions options;
-    options.threads = threads;
-    options.rebuild_above = 1;  // not even a rounding
-    CHECK(geometry.Update(shapes.Input(), options).value() == Updated::kRefit);
-    const TreeView<float>& after = GeometryAccess::TreeOf(geometry);
-    REQUIRE(after.node_count == before.size());
-    CHECK(std::memcmp(after.nodes, before.data(), before.size() * sizeof(TreeNode)) == 0);
+TEST_CASE_TEMPLATE("objects come, go and change", Real, float, double) {
+  Random random(5);
+  RandomObjects<Real> few(random, 20), many(random, 50);
+  GeometryOf<Real> geometry;
+  for (const auto* objects : {&few, &many, &few}) {
+    CHECK(geometry.Update(objects->Input()).value() == Updated::kRebuilt);
+    CheckSame(geometry, GeometryOf<Real>::Build(objects->Input()).value(), random);
   }
+  // As many primitives, of other kinds.
+  std::vector<Real> spheres(4 * 7, 1), disks(7 * 7, 1);
+  GeometryInput first, second;
+  first.AddSpheres(spheres), first.AddDisks(disks);
+  second.AddDisks(disks), second.AddSpheres(spheres);
+  CHECK(geometry.Update(first).value() == Updated::kRebuilt);
+  CHECK(geometry.Update(second).value() == Updated::kRebuilt);
+  CheckSame(geometry, GeometryOf<Real>::Build(second).value(), random);
+  CHECK(geometry.Update(GeometryInput()).value() == Updated::kRebuilt);
+  CHECK(geometry.object_count() == 0);
 }
 
-TEST_CASE("meshes of floats, which take a shorter way") {
-  Random random(14);
-  Shapes shapes(30);
-  const auto input_of = [](const std::vector<float>& vertices, const Shapes& shape) {
-    GeometryInput input;
-    input.AddTriangles(vertices, std::span(shape.indices).first(999));
-    input.AddTriangles(vertices, std::span(shape.indices).subspan(999));
-    return input;
+TEST_CASE("what can be hit no more, or again, and other scales") {
+  Random random(3);
+  RandomObjects<float> objects(random, 60);
+  const UpdateOptions options{.rebuild_ratio = kNever};
+  auto geometry = Geometry::Build(objects.Input()).value();
+  const auto check = [&](Updated expected) {
+    CHECK(geometry.Update(objects.Input(), options).value() == expected);
+    CheckSame(geometry, Geometry::Build(objects.Input()).value(), random);
+    CheckSound(geometry, objects.Input());
   };
-  const auto floats = [&] {
-    return std::vector<float>(shapes.vertices.begin(), shapes.vertices.end());
-  };
-  std::vector<float> vertices = floats();
-  auto built = Geometry::Build(input_of(vertices, shapes));
-  REQUIRE(built);
-  Geometry& geometry = built.value();
-  const auto update = [&](Updated wanted) {
-    const auto updated = geometry.Update(input_of(vertices, shapes));
-    REQUIRE(updated);
-    CHECK(updated.value() == wanted);
-    CheckLikeBuilt(geometry, input_of(vertices, shapes));
-  };
-  for (int step = 0; step < 4; ++step) {
-    shapes.Move(random, 0.02);
-    vertices = floats();
-    update(Updated::kRefit);
-  }
-  // A sliver has an area all the same.
-  for (int axis = 0; axis < 3; ++axis) {
-    vertices[3 + axis] = (vertices[axis] + vertices[93 + axis]) / 2;
-  }
-  update(Updated::kRefit);
-  vertices = floats();
-  // Nothing left of one triangle; another scale; a giant.
-  std::copy_n(vertices.begin(), 3, vertices.begin() + 3);
-  update(Updated::kRebuilt);
-  update(Updated::kRefit);
-  vertices = floats();
-  update(Updated::kRebuilt);
-  for (float& x : vertices) x *= 1e-20f;
-  update(Updated::kRefit);
-  vertices = floats();
-  vertices[0] = 1e13f;
-  REQUIRE(geometry.Update(input_of(vertices, shapes)));
-  CheckLikeBuilt(geometry, input_of(vertices, shapes));
-  vertices = floats();
-  REQUIRE(geometry.Update(input_of(vertices, shapes)));
-  CheckLikeBuilt(geometry, input_of(vertices, shapes));
-  const Hits<float> before = HitsOf(geometry, Target::Scalar());
-  vertices[7] = std::numeric_limits<float>::infinity();
-  CHECK(!geometry.Update(input_of(vertices, shapes)));
-  vertices = floats();
-  shapes.indices[5] = 1000000;
-  CHECK(!geometry.Update(input_of(vertices, shapes)));
-  CHECK(HitsOf(geometry, Target::Scalar()) == before);
+  const float radius = objects.spheres[3];
+  objects.spheres[3] = 0;
+  check(Updated::kRebuilt);
+  MoveObjects(random, 0.1, objects);
+  check(Updated::kRefitted);  // around what cannot be hit
+  // Another sphere instead: as many as before.
+  objects.spheres[3] = radius;
+  objects.spheres[7] = 0;
+  check(Updated::kRebuilt);
+  // One that is larger than boxes can be, and triangles beyond where products fit.
+  objects.spheres[11] = 0x1p60f;
+  check(Updated::kRefitted);
+  objects.spheres[11] = 1;
+  for (float& x : objects.bare) x *= 0x1p70f;
+  check(Updated::kRefitted);
 }
 
-TEST_CASE("the tree is kept as long as it is good enough") {
-  Random random(12);
-  Shapes shapes(40);
-  auto built = Geometry::Build(shapes.Input());
-  REQUIRE(built);
-  Shapes scattered = shapes;
-  scattered.Move(random, 8);
-  UpdateOptions never;
-  never.rebuild_above = std::numeric_limits<double>::infinity();
-  CHECK(built.value().Update(scattered.Input(), never).value() == Updated::kRefit);
-  CheckLikeBuilt(built.value(), scattered.Input());
-  // Still beside the tree that was built.
-  CHECK(built.value().Update(scattered.Input()).value() == Updated::kRebuilt);
-  CHECK(built.value().Update(scattered.Input()).value() == Updated::kRefit);
-  CheckLikeBuilt(built.value(), scattered.Input());
-}
-
-TEST_CASE("other primitives than before") {
-  const Shapes shapes(10);
-  const auto update = [&](Geometry& geometry, const GeometryInput& input) {
-    const auto updated = geometry.Update(input);
-    REQUIRE(updated);
-    CheckLikeBuilt(geometry, input);
-    return updated.value();
-  };
-  Geometry geometry;
-  CHECK(update(geometry, shapes.Input()) == Updated::kRebuilt);
-  // One of no area is left out; then it comes back.
-  Shapes flat = shapes;
-  for (int k = 0; k < 3; ++k) flat.vertices[k] = flat.vertices[3 + k];
-  CHECK(update(geometry, flat.Input()) == Updated::kRebuilt);
-  CHECK(update(geometry, flat.Input()) == Updated::kRefit);
-  // As many of no area, but others.
-  Shapes other = shapes;
-  for (int k = 0; k < 3; ++k) other.vertices[33 + k] = other.vertices[36 + k];
-  const auto never_hit = [&](const Shapes& of) {
-    return Geometry::Build(of.Input()).value().statistics().never_hit;
-  };
-  REQUIRE(never_hit(other) >= 1);
-  update(geometry, other.Input());
-  CHECK(update(geometry, shapes.Input()) == Updated::kRebuilt);
-  // An object more, and none.
-  GeometryInput more = shapes.Input();
-  more.AddSpheres(shapes.spheres);
-  CHECK(update(geometry, more) == Updated::kRebuilt);
-  CHECK(update(geometry, GeometryInput()) == Updated::kRebuilt);
-  CHECK(update(geometry, GeometryInput()) == Updated::kRefit);
-  // Spheres and disks change places: as many objects and primitives of each kind.
-  GeometryInput a, b;
-  a.AddSpheres(shapes.spheres);
-  a.AddDisks(shapes.disks);
-  b.AddDisks(shapes.disks);
-  b.AddSpheres(shapes.spheres);
-  CHECK(update(geometry, a) == Updated::kRebuilt);
-  CHECK(update(geometry, b) == Updated::kRebuilt);
-  CHECK(update(geometry, b) == Updated::kRefit);
-}
-
-TEST_CASE("giants, and what becomes one") {
-  Random random(13);
-  Shapes shapes(10);
-  Shapes wide = shapes;
-  wide.spheres[3] = 1e13;
-  auto built = Geometry::Build(shapes.Input());
-  REQUIRE(built);
-  for (const Shapes* each : {&wide, &wide, &shapes, &wide, &shapes}) {
-    REQUIRE(built.value().Update(each->Input()));
-    CheckLikeBuilt(built.value(), each->Input());
-  }
-}
-
-TEST_CASE("what is refused leaves the geometry as it was") {
-  const Shapes shapes(10);
-  auto built = Geometry::Build(shapes.Input());
-  REQUIRE(built);
-  const Hits<float> before = HitsOf(built.value(), Target::Scalar());
-  Shapes broken = shapes;
-  broken.vertices[31] = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = built.value().Update(broken.Input());
-  REQUIRE(!refused);
-  CHECK(refused.error().kind == ErrorKind::kUsage);
-  CHECK(refused.error().message.find("object 1, triangle") != std::string::npos);
-  UpdateOptions options;
-  for (const double above : {0.99, std::numeric_limits<double>::quiet_NaN()}) {
-    options.rebuild_above = above;
-    CHECK(!built.value().Update(shapes.Input(), options));
-  }
-  CHECK(HitsOf(built.value(), Target::Scalar()) == before);
-  options = {.not_finite = NotFinite::kSkipped};
-  REQUIRE(built.value().Update(broken.Input(), options));
-  CHECK(built.value().statistics().skipped >= 1);
+TEST_CASE("a failed update leaves the geometry as it was") {
+  Random random(9);
+  RandomObjects<float> objects(random, 30);
+  auto geometry = Geometry::Build(objects.Input()).value();
+  const auto before = Geometry::Build(objects.Input()).value();
+  MoveObjects(random, 1, objects);
+  objects.vertices[4] = std::numeric_limits<float>::infinity();
+  const Result<Updated> failed = geometry.Update(objects.Input());
+  REQUIRE(!failed.ok());
+  CHECK(failed.error().message == "object 1, triangle 0: a coordinate is not finite");
+  CheckSame(geometry, before, random);
+  const UpdateOptions skip{.not_finite = NotFinite::kSkipped};
+  CHECK(geometry.Update(objects.Input(), skip).value() == Updated::kRebuilt);
+  CHECK(geometry.statistics().skipped == 1);
 }
 
 }  // namespace

@@ -235,6 +235,7 @@ Result<FlatInputOf<Real>> GeometryAccess::FlattenTo(const GeometryInput& input,
     const std::uint32_t id = next.total();
     flat.first.push_back(id);
     flat.first_triangle.push_back(next[PrimitiveKind::kTriangle]);
+    flat.kind.push_back(object.kind);
     const std::size_t wrong = PutAny(object, next[object.kind], id, options, flat);
     if (wrong < object.primitive_count()) {
       return Usage(Name(i, NameOf(object.kind), wrong) + ": " + object.PrimitiveFault<Real>(wrong));

@@ -91,20 +91,34 @@ const typename GeometryOf<Real>::Data& GeometryOf<Real>::data() const {
     }
   };
   static const Empty kEmpty;
-  const Data* const own = data_.get();
-  return own ? *own : kEmpty;
+  if (data_) return *data_;
+  return kEmpty;
 }
 
 template <typename Real>
-void GeometryOf<Real>::Data::Take(FlatInputOf<Real>& flat, Real scale_of_flat) {
-  scale = scale_of_flat;
+void GeometryOf<Real>::Data::Take(FlatInputOf<Real>& flat) {
   first = std::move(flat.first);
   first_triangle = std::move(flat.first_triangle);
+  kind = std::move(flat.kind);
   never_hit = flat.never_hit;
   skipped = flat.skipped;
   for (std::size_t k = 0; k < 9; ++k) {
     normal[k / 3][k % 3] = std::move(flat.arrays.normal[k / 3][k % 3]);
+    normals[k] = normal[k / 3][k % 3].data();
   }
+}
+
+template <typename Real>
+Result<std::unique_ptr<typename GeometryOf<Real>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<Real>& flat, Real scale, int threads) {
+  auto data = std::make_unique<typename GeometryOf<Real>::Data>();
+  data->scale = scale;
+  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), threads);
+  if (!tree) return tree.error();
+  data->tree = std::move(tree).value();
+  data->view = data->tree.view();
+  data->Take(flat);
+  return data;
 }
 
 template <typename Real>
@@ -113,27 +127,12 @@ Result<GeometryOf<Real>> GeometryOf<Real>::Build(const GeometryInput& input,
   Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(input, options);
   if (!flattened) return flattened.error();
   FlatInputOf<Real>& flat = flattened.value();
+  auto data = GeometryAccess::BuildData(flat, Rescale(flat), options.threads);
+  if (!data) return data.error();
   GeometryOf geometry;
-  const Real scale = Rescale(flat);
-  const Status built = GeometryAccess::BuildFrom(flat, scale, options.threads, geometry);
-  if (!built) return built.error();
+  geometry.data_ = std::move(data).value();
   return geometry;
 }
-
-template <typename Real>
-Status GeometryAccess::BuildFrom(FlatInputOf<Real>& flat, Real scale, int threads,
-                                 GeometryOf<Real>& to) {
-  Result<Tree<Real>> tree = BuildTree(flat.arrays.view(), threads);
-  if (!tree) return tree.error();
-  auto data = std::make_unique<Data<Real>>();
-  data->tree = std::move(tree).value();
-  data->view = data->tree.view();
-  data->Take(flat, scale);
-  to.data_ = std::move(data);
-  return Done{};
-}
-template Status GeometryAccess::BuildFrom(FlatInputOf<float>&, float, int, Geometry&);
-template Status GeometryAccess::BuildFrom(FlatInputOf<double>&, double, int, GeometryD&);
 
 template <typename Real>
 std::array<float, 3> GeometryOf<Real>::lower() const {
@@ -157,7 +156,7 @@ GeometryStatistics GeometryOf<Real>::statistics() const {
   statistics.nodes = tree.node_count;
   statistics.bytes = sizeof(*this) + sizeof(Data) + data().tree.bytes() +
                      9 * data().normal[0][0].size() * sizeof(Real) +
-                     2 * data().first.capacity() * sizeof(data().first[0]);
+                     3 * data().first.capacity() * sizeof(data().first[0]) + data().file_bytes;
   statistics.depth = DepthOf(tree.nodes, tree.node_count);
   for (std::uint32_t i = 0; i < tree.node_count; ++i) {
     for (const std::uint32_t child : tree.nodes[i].child) {
@@ -185,6 +184,10 @@ std::uint32_t GeometryOf<Real>::first_primitive(std::uint32_t object) const {
   return data().first[object];
 }
 
+template Result<std::unique_ptr<GeometryOf<float>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<float>&, float, int);
+template Result<std::unique_ptr<GeometryOf<double>::Data>> GeometryAccess::BuildData(
+    FlatInputOf<double>&, double, int);
 template class GeometryOf<float>;
 template class GeometryOf<double>;
 

@@ -3,6 +3,7 @@
 #define SHEAF_BVH_GEOMETRY_ACCESS_H_
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,12 +25,14 @@ struct FlatInputOf {
   GeometryArrays<Real> arrays;
   std::vector<std::uint32_t> first;           // primitive of each object; the last: number of all
   std::vector<std::uint32_t> first_triangle;  // of each object, among triangles
+  std::vector<PrimitiveKind> kind;            // of each object
   std::uint32_t never_hit = 0, skipped = 0;
   TriangleSizes sizes;
 };
 using FlatInput = FlatInputOf<float>;
 
 // What a Geometry owns. The arrays are dropped, but for normals: the tree holds all that rays need.
+// Where the geometry is mapped, view and normals show the file, and the arrays are empty.
 template <typename Real>
 struct GeometryOf<Real>::Data {
   Tree<Real> tree;  // of coordinates times scale
@@ -37,13 +40,17 @@ struct GeometryOf<Real>::Data {
   Real scale = 1;                                // a power of two
   std::vector<std::uint32_t> first{0};           // see FlatInputOf
   std::vector<std::uint32_t> first_triangle{0};  // likewise
+  std::vector<PrimitiveKind> kind;               // likewise
   std::uint32_t never_hit = 0, skipped = 0;
-  AlignedArray<Real> normal[3][3];  // by triangle; empty where no mesh has any
-  double built_cost = -1;           // of the tree as it was built; below 0: not asked for yet
-  PrimitiveIndex<Real> index;       // made at its first use
+  AlignedArray<Real> normal[3][3];   // by triangle; empty where no mesh has any
+  const Real* normals[9] = {};       // the same by vertex and axis; null where no mesh has any
+  PrimitiveIndex<Real> index;        // made at its first use
+  double built_cost = -1;            // CostOfTree right after the build; below 0: not known yet
+  std::shared_ptr<const void> file;  // the mapping that is shown
+  std::size_t file_bytes = 0;        // of it
 
-  // Takes what the tree does not have.
-  void Take(FlatInputOf<Real>& flat, Real scale_of_flat);
+  // Takes all that is in `flat` but what the tree was built from, which it must be of.
+  void Take(FlatInputOf<Real>& flat);
 };
 
 // Multiplies all lengths by the power of two that triangles are hit at, which it returns; marks and
@@ -52,8 +59,19 @@ template <typename Real>
 Real Rescale(FlatInputOf<Real>& flat);
 
 struct GeometryAccess {
+  // The data of a geometry of this input, which Rescale has scaled; consumes it. Fails as BuildTree
+  // does.
+  template <typename Real>
+  static Result<std::unique_ptr<typename GeometryOf<Real>::Data>> BuildData(FlatInputOf<Real>& flat,
+                                                                            Real scale,
+                                                                            int threads);
+
   // Primitives of any kind but triangles, whose numbers are vertices and indices.
   static void Add(GeometryInput& input, PrimitiveKind kind, std::span<const float> fields);
+
+  // The meshes, where the input is nothing but meshes of floats without normals, whose arrays are
+  // whole; else none.
+  static std::vector<bvh::FloatMesh> PlainMeshes(const GeometryInput& input);
 
   // Fails as Geometry::Build does.
   template <typename Real>
@@ -63,10 +81,6 @@ struct GeometryAccess {
     return FlattenTo<float>(input, {.threads = threads});
   }
 
-  // The meshes, where the input is nothing but meshes of floats without normals, whose arrays are
-  // whole; else none.
-  static std::vector<bvh::FloatMesh> PlainMeshes(const GeometryInput& input);
-
   // A class of its own: clang 14 looks at an alias's access from where it is used.
   template <typename Real>
   struct DataType {
@@ -74,11 +88,6 @@ struct GeometryAccess {
   };
   template <typename Real>
   using Data = typename DataType<Real>::Type;
-  // Gives `to` a tree of its own over what `flat` holds, which Rescale has scaled by `scale`, and
-  // takes what the tree does not have. Fails as BuildTree does; `to` is then as it was.
-  template <typename Real>
-  static Status BuildFrom(FlatInputOf<Real>& flat, Real scale, int threads, GeometryOf<Real>& to);
-
   template <typename Real>
   static const Data<Real>& DataOf(const GeometryOf<Real>& geometry) {
     return geometry.data();

@@ -96,14 +96,14 @@ class HitBlock {
   }
 
   void CopyNormals(TriangleArrays<Real>& triangles) {
-    if (data_.normal[0][0].size() == 0) return;
+    if (!data_.normals[0]) return;
     for (std::uint32_t n = 0; n < triangles.count; ++n) {
       const std::uint32_t id = primitive_[n];
       const auto object = std::upper_bound(data_.first.begin(), data_.first.end(), id) - 1;
       const std::uint32_t triangle =
           data_.first_triangle[static_cast<std::size_t>(object - data_.first.begin())] + id -
           *object;
-      for (std::size_t k = 0; k < 9; ++k) normals_[k][n] = data_.normal[k / 3][k % 3][triangle];
+      for (std::size_t k = 0; k < 9; ++k) normals_[k][n] = data_.normals[k][triangle];
     }
     for (std::size_t k = 0; k < 9; ++k) triangles.normal[k / 3][k % 3] = normals_[k];
   }

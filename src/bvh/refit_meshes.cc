@@ -8,13 +8,25 @@
 #include <iterator>
 #include <limits>
 
+#include "src/bvh/node_boxes.h"
+#include "src/bvh/order_children.h"
 #include "src/bvh/primitive_box.h"
-#include "src/bvh/refit_tree.h"
 #include "src/bvh/round_outward.h"
 #include "src/core/has_area.h"
 
 namespace sheaf::bvh {
 namespace {
+
+constexpr std::uint32_t kNodesATask = 256;
+
+// Calls work(first, end, block) for blocks of nodes [0, count), kNodesATask each, in parallel.
+template <typename Work>
+void ForNodes(std::uint32_t count, const Work& work) {
+  oneapi::tbb::parallel_for(0u, (count + kNodesATask - 1) / kNodesATask, [&](std::uint32_t block) {
+    const std::uint32_t first = block * kNodesATask;
+    work(first, std::min(first + kNodesATask, count), block);
+  });
+}
 
 constexpr std::size_t kNumbersATask = 1 << 16;
 // Coordinates below this are scaled by nothing, and their grown boxes are no giants'.
@@ -92,6 +104,20 @@ Box4 BoxAround(const Float4 (&vertex)[3]) {
   Box4 box;
   for (const Float4 v : vertex) box.Include(v, v);
   return box;
+}
+
+// Makes the boxes of inner nodes, and all orders, where the boxes of leaves are right.
+void RefitNodes(std::uint32_t count, TreeNode* nodes) {
+  // Every node comes before its children.
+  for (std::uint32_t i = count; i-- > 0;) {
+    for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
+      const std::uint32_t child = nodes[i].child[slot];
+      if (!IsLeaf(child)) StoreChild(BoxOfNode(nodes[child]), slot, nodes[i]);
+    }
+  }
+  ForNodes(count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
+    for (std::uint32_t i = first; i < end; ++i) OrderChildren(nodes[i], CountChildren(nodes[i]));
+  });
 }
 
 class MeshLeaves {

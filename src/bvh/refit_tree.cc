@@ -1,52 +1,158 @@
 #include "src/bvh/refit_tree.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
+#include <mutex>
 
 #include "src/bvh/find_split.h"
 #include "src/bvh/float4.h"
+#include "src/bvh/node_boxes.h"
 #include "src/bvh/order_children.h"
 #include "src/bvh/primitive_box.h"
+#include "src/core/parallel.h"
 
-namespace sheaf::bvh {
+namespace sheaf {
 namespace {
 
-// Around primitives: of all, and of all but giants.
-struct Extents {
+using bvh::Box4;
+using bvh::PrimitiveBox;
+
+// The last levels above the subtrees that are refitted side by side; the nodes in these levels.
+constexpr std::uint32_t kTopLevels = 3;
+constexpr std::size_t kMaxTops = 1 + 8 + 64, kMaxSubtrees = 512;
+
+// Ids to positions. Neighbours in a leaf are mostly of one object.
+class IndexFinder {
+ public:
+  explicit IndexFinder(const ObjectIndex& objects) : objects_(objects) {}
+
+  std::uint32_t operator()(std::uint32_t id) {
+    const std::vector<std::uint32_t>& first = objects_.first;
+    if (!(first[object_] <= id && id < first[object_ + 1])) {
+      const auto after = std::upper_bound(first.begin(), first.end(), id);
+      object_ = static_cast<std::size_t>(after - first.begin() - 1);
+    }
+    return objects_.index[object_] + (id - first[object_]);
+  }
+
+ private:
+  const ObjectIndex& objects_;
+  std::size_t object_ = 0;
+};
+
+// What lies within a tree: as PrimitiveBoxes has them.
+struct Extent {
   Box4 all, others;
 
-  void Include(const Extents& more) {
-    all.Include(more.all);
-    others.Include(more.others);
+  void Include(const Extent& extent) {
+    all.Include(extent.all);
+    others.Include(extent.others);
   }
 };
 
-// Writes one leaf's primitives; returns its box.
-template <typename Real, typename Arrays>
-Box4 RefitLeaf(std::uint32_t leaf, const Arrays& arrays, const GeometryView<Real>& geometry,
-               const PlacesById& places, PrimitiveBlocks<Real>& blocks, Extents& extents) {
-  const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
-  const std::uint32_t* const ids = blocks.id.data() + first;
-  Real* const to = blocks.fields.data() + std::size_t{Arrays::kFieldCount} * first;
-  Box4 bounds;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t place = places[ids[i]];
-    Real* next = to + i;
-    Arrays::ForEachField(arrays, [&](const Real* field) {
-      *next = field[IndexIn(place)];
-      next += count;
-    });
-    PrimitiveBox box;
-    MakeBox(geometry, place, box);
-    extents.all.Include(BoxOf(box));
-    if (IsGiant(box)) {
-      box = GiantBox(box.tag);
-    } else {
-      extents.others.Include(BoxOf(box));
+template <typename Real>
+class Refitter {
+ public:
+  Refitter(const GeometryView<Real>& geometry, const ObjectIndex& objects, Tree<Real>& tree)
+      : geometry_(geometry), objects_(objects), tree_(tree) {}
+
+  // Recurses as deep as the tree is.
+  void RefitBelow(std::uint32_t index, IndexFinder& find, Extent& extent) {
+    for (const std::uint32_t child : tree_.nodes[index].child) {
+      if (!IsLeaf(child)) RefitBelow(child, find, extent);
     }
-    bounds.Include(BoxOf(box));
+    RefitNode(index, find, extent);
   }
-  return bounds;
+
+  // A node above fitted ones.
+  void RefitNode(std::uint32_t index, IndexFinder& find, Extent& extent) {
+    TreeNode& node = tree_.nodes[index];
+    std::uint32_t count = 0;
+    for (std::uint32_t slot = 0; slot < kTreeWidth; ++slot) {
+      const std::uint32_t child = node.child[slot];
+      if (child == kNoChild) continue;
+      ++count;
+      bvh::StoreChild(
+          IsLeaf(child) ? RefitLeaf(child, find, extent) : bvh::BoxOfNode(tree_.nodes[child]), slot,
+          node);
+    }
+    bvh::OrderChildren(node, count);
+  }
+
+  IndexFinder finder() const { return IndexFinder(objects_); }
+
+ private:
+  Box4 RefitLeaf(std::uint32_t leaf, IndexFinder& find, Extent& extent) {
+    Box4 box;
+    ForEachKind(geometry_, [&](const auto& arrays) {
+      if (arrays.kKind == LeafKind(leaf)) box = RefitLeafOf(leaf, arrays, find, extent);
+    });
+    return box;
+  }
+
+  template <typename Arrays>
+  Box4 RefitLeafOf(std::uint32_t leaf, const Arrays& arrays, IndexFinder& find, Extent& extent) {
+    PrimitiveBlocks<Real>& blocks = tree_.of(Arrays::kKind);
+    const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
+    Real* const block = blocks.fields.data() + std::size_t{Arrays::kFieldCount} * first;
+    Box4 bounds;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t index = find(blocks.id[first + i]);
+      Real* to = block + i;
+      Arrays::ForEachField(arrays, [&](const Real* field) {
+        *to = field[index];
+        to += count;
+      });
+      PrimitiveBox made;
+      bvh::MakeBox(geometry_, MakePlace(Arrays::kKind, index), made);
+      extent.all.Include(bvh::BoxOf(made));
+      if (bvh::IsGiant(made)) {
+        made = bvh::GiantBox(made.tag);
+      } else {
+        extent.others.Include(bvh::BoxOf(made));
+      }
+      bounds.Include(bvh::BoxOf(made));
+    }
+    return bounds;
+  }
+
+  const GeometryView<Real>& geometry_;
+  const ObjectIndex& objects_;
+  Tree<Real>& tree_;
+};
+
+// The nodes of the first levels in the order of the tree, and what hangs below them.
+struct Cut {
+  std::array<std::uint32_t, kMaxTops> tops;
+  std::array<std::uint32_t, kMaxSubtrees> subtrees;
+  std::size_t top_count = 0, subtree_count = 0;
+
+  void Add(const TreeNode* nodes, std::uint32_t index, std::uint32_t level) {
+    if (level == kTopLevels) {
+      subtrees[subtree_count++] = index;
+      return;
+    }
+    tops[top_count++] = index;
+    for (const std::uint32_t child : nodes[index].child) {
+      if (!IsLeaf(child)) Add(nodes, child, level + 1);
+    }
+  }
+};
+
+template <typename Real>
+Extent RefitParallel(Refitter<Real>& refitter, const Cut& cut, int threads) {
+  std::mutex mutex;
+  Extent extent;
+  ParallelFor(threads, cut.subtree_count, [&](int, std::uint64_t i) {
+    IndexFinder find = refitter.finder();
+    Extent part;
+    refitter.RefitBelow(cut.subtrees[i], find, part);
+    const std::lock_guard<std::mutex> lock(mutex);
+    extent.Include(part);
+  });
+  IndexFinder find = refitter.finder();
+  for (std::size_t i = cut.top_count; i-- > 0;) refitter.RefitNode(cut.tops[i], find, extent);
+  return extent;
 }
 
 // Half the surface, in double, where no extent overflows; 0 of a giant's.
@@ -62,116 +168,76 @@ double AreaOf(const Box4& box) {
 }  // namespace
 
 template <typename Real>
-PlacesById::PlacesById(const GeometryView<Real>& geometry) {
-  std::uint32_t kinds = 0, total = 0;
-  ForEachKind(geometry, [&](const auto& arrays) {
-    if (arrays.count > 0) only_kind_ = arrays.kKind;
-    kinds += arrays.count > 0;
-    total += arrays.count;
-  });
-  if (kinds <= 1) return;
-  places_.resize(total);
-  ForEachKind(geometry, [&](const auto& arrays) {
-    for (std::uint32_t i = 0; i < arrays.count; ++i) {
-      places_[arrays.id[i]] = MakePlace(arrays.kKind, i);
-    }
-  });
-}
-
-template <typename Real>
-bool IsTreeOver(const GeometryView<Real>& geometry, std::uint32_t hittable,
-                const PlacesById& places, const Tree<Real>& tree) {
-  std::uint32_t kinds = 0, total = 0, in_tree = 0;
-  bool has_same = true;
-  ForEachKind(geometry, [&](const auto& arrays) {
-    kinds += arrays.count > 0;
-    total += arrays.count;
-    in_tree += tree.of(arrays.kKind).count;
-    has_same &= tree.of(arrays.kKind).count <= arrays.count;
-  });
-  if (!has_same || in_tree != hittable) return false;
-  if (kinds <= 1 && hittable == total) return true;
-  PrimitiveBox box;
-  for (std::uint32_t k = 0; k < kKindCount; ++k) {
-    const PrimitiveBlocks<Real>& blocks = tree.blocks[k];
-    for (std::uint32_t i = 0; i < blocks.count; ++i) {
-      const std::uint32_t place = places[blocks.id.data()[i]];
-      if (IndexOf(KindOf(place)) != k) return false;
-      if (MakeBox(geometry, place, box) != BoxState::kFinite) return false;
-    }
-  }
-  return true;
-}
-
-void RefitNodes(std::uint32_t count, TreeNode* nodes) {
-  // Every node comes before its children.
-  for (std::uint32_t i = count; i-- > 0;) {
-    for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-      const std::uint32_t child = nodes[i].child[slot];
-      if (!IsLeaf(child)) StoreChild(BoxOfNode(nodes[child]), slot, nodes[i]);
-    }
-  }
-  ForNodes(count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
-    for (std::uint32_t i = first; i < end; ++i) OrderChildren(nodes[i], CountChildren(nodes[i]));
-  });
-}
-
-template <typename Real>
-void RefitTree(const GeometryView<Real>& geometry, const PlacesById& places, Tree<Real>& tree) {
-  TreeNode* const nodes = tree.nodes.data();
-  std::vector<Extents> extents((tree.node_count + kNodesATask - 1) / kNodesATask);
-  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
-    for (std::uint32_t i = first; i < end; ++i) {
-      for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-        const std::uint32_t child = nodes[i].child[slot];
-        if (!IsLeaf(child)) continue;
-        ForEachKind(geometry, [&](const auto& arrays) {
-          if (arrays.kKind != LeafKind(child)) return;
-          const Box4 box =
-              RefitLeaf(child, arrays, geometry, places, tree.of(arrays.kKind), extents[block]);
-          StoreChild(box, slot, nodes[i]);
-        });
-      }
-    }
-  });
-  RefitNodes(tree.node_count, nodes);
-  Extents whole;
-  for (const Extents& part : extents) whole.Include(part);
-  tree.SetBounds(whole.all, whole.others);
-}
-
-template <typename Real>
-double CostOfTree(const Tree<Real>& tree) {
-  const TreeNode* const nodes = tree.nodes.data();
-  std::vector<double> costs((tree.node_count + kNodesATask - 1) / kNodesATask);
-  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t block) {
-    for (std::uint32_t i = first; i < end; ++i) {
-      for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-        const std::uint32_t child = nodes[i].child[slot];
-        const double leaf = static_cast<double>(kPrimitiveCost) * LeafCount(child);
-        const double inner = IsLeaf(child) ? leaf : 0;
-        costs[block] +=
-            AreaOf(ChildBox(nodes[i], slot)) * (static_cast<double>(kBlockCost) + inner);
-      }
-    }
-  });
+double CostOfTree(const TreeView<Real>& tree) {
   Box4 others;
   for (int axis = 0; axis < 3; ++axis) {
     others.lower[axis] = tree.lower[axis];
     others.upper[axis] = tree.upper[axis];
   }
-  const double sum = std::accumulate(costs.begin(), costs.end(), 0.0);
-  return sum > 0 ? sum / AreaOf(others) : 0;
+  double cost = 0;
+  for (std::uint32_t i = 0; i < tree.node_count; ++i) {
+    const TreeNode& node = tree.nodes[i];
+    for (std::uint32_t slot = 0; slot < bvh::CountChildren(node); ++slot) {
+      const std::uint32_t child = node.child[slot];
+      const double primitives = IsLeaf(child) ? LeafCount(child) : 0;
+      cost += AreaOf(bvh::ChildBox(node, slot)) *
+              (double{bvh::kBlockCost} + primitives * double{bvh::kPrimitiveCost});
+    }
+  }
+  const double whole = AreaOf(others);
+  return cost > 0 && whole > 0 ? cost / whole : 0;
 }
 
-#define SHEAF_INSTANTIATE(Real)                                                         \
-  template PlacesById::PlacesById(const GeometryView<Real>&);                           \
-  template bool IsTreeOver(const GeometryView<Real>&, std::uint32_t, const PlacesById&, \
-                           const Tree<Real>&);                                          \
-  template void RefitTree(const GeometryView<Real>&, const PlacesById&, Tree<Real>&);   \
-  template double CostOfTree(const Tree<Real>&);
-SHEAF_INSTANTIATE(float)
-SHEAF_INSTANTIATE(double)
-#undef SHEAF_INSTANTIATE
+template <typename Real>
+bool HasSamePrimitives(const TreeView<Real>& tree, const GeometryView<Real>& geometry,
+                       const ObjectIndex& objects) {
+  bool is_same = true;
+  ForEachKind(geometry, [&](const auto& arrays) {
+    const BlockView<Real>& block = tree.of(arrays.kKind);
+    const auto is_there = [&](std::uint32_t index) {
+      bool has_nan = false;
+      arrays.ForEachField(arrays,
+                          [&](const Real* field) { has_nan |= field[index] != field[index]; });
+      return !has_nan;
+    };
+    std::uint32_t there = 0;
+    for (std::uint32_t i = 0; i < arrays.count; ++i) there += is_there(i);
+    is_same &= there == block.count;
+    IndexFinder find(objects);
+    for (std::uint32_t i = 0; i < block.count && is_same; ++i) {
+      is_same = is_there(find(block.id[i]));
+    }
+  });
+  return is_same;
+}
 
-}  // namespace sheaf::bvh
+template <typename Real>
+void RefitTree(const GeometryView<Real>& geometry, const ObjectIndex& objects, int threads,
+               Tree<Real>& tree) noexcept {
+  if (tree.node_count == 0) return;
+  Refitter<Real> refitter(geometry, objects, tree);
+  Cut cut;
+  cut.Add(tree.nodes.data(), 0, 0);
+  Extent extent;
+  try {
+    extent = RefitParallel(refitter, cut, threads);
+  } catch (...) {
+    // There is no memory for a loop's tasks. Half a tree is of no use, and one thread needs none.
+    extent = Extent();
+    IndexFinder find = refitter.finder();
+    refitter.RefitBelow(0, find, extent);
+  }
+  tree.SetBounds(extent.all, extent.others);
+}
+
+template double CostOfTree(const TreeView<float>&);
+template double CostOfTree(const TreeView<double>&);
+template bool HasSamePrimitives(const TreeView<float>&, const GeometryView<float>&,
+                                const ObjectIndex&);
+template bool HasSamePrimitives(const TreeView<double>&, const GeometryView<double>&,
+                                const ObjectIndex&);
+template void RefitTree(const GeometryView<float>&, const ObjectIndex&, int, Tree<float>&) noexcept;
+template void RefitTree(const GeometryView<double>&, const ObjectIndex&, int,
+                        Tree<double>&) noexcept;
+
+}  // namespace sheaf

@@ -1,41 +1,77 @@
-// Geometry::Update: primitives that move.
+// From a geometry to that of other vertices, by way of the old tree where it is good enough.
 #include <oneapi/tbb/task_arena.h>
 
-#include <string>
+#include <algorithm>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "sheaf/geometry.h"
+#include "src/bvh/build_tree.h"
 #include "src/bvh/geometry_access.h"
-#include "src/bvh/refit_meshes.h"
 #include "src/bvh/refit_tree.h"
 #include "src/core/parallel.h"
 
 namespace sheaf {
 namespace {
 
-// Refits the tree where it is over what `flat` holds. Returns whether it was, and is good enough.
 template <typename Real>
-bool Refit(FlatInputOf<Real>& flat, Real scale, double rebuild_above,
-           GeometryAccess::Data<Real>& data) {
-  const GeometryView<Real> view = flat.arrays.view();
-  const std::uint32_t hittable = flat.first.back() - flat.never_hit - flat.skipped;
-  const bvh::PlacesById places(view);
-  if (!bvh::IsTreeOver(view, hittable, places, data.tree)) return false;
-  if (data.built_cost < 0) data.built_cost = bvh::CostOfTree(data.tree);
-  bvh::RefitTree(view, places, data.tree);
-  data.view = data.tree.view();
-  data.scale = scale;
-  return bvh::CostOfTree(data.tree) <= rebuild_above * data.built_cost;
+ObjectIndex IndexOfObjects(const FlatInputOf<Real>& flat) {
+  ObjectIndex objects{flat.first, {}};
+  PrimitiveCounts next;
+  for (std::size_t i = 0; i < flat.kind.size(); ++i) {
+    objects.index.push_back(next[flat.kind[i]]);
+    next[flat.kind[i]] += flat.first[i + 1] - flat.first[i];
+  }
+  return objects;
 }
 
-// The same for plain meshes, without arrays between. Where it is false, because something is not so
-// plain or the tree is not good enough, the long way is to follow.
-bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, double rebuild_above,
+// A tree's arrays for one that only shows them.
+template <typename Real>
+Tree<Real> CopyOf(const Tree<Real>& bounds, const TreeView<Real>& view) {
+  Tree<Real> tree;
+  tree.node_count = view.node_count;
+  tree.nodes.AllocateForOverwrite(view.node_count, 0);
+  std::copy_n(view.nodes, view.node_count, tree.nodes.data());
+  for (std::uint32_t k = 0; k < kKindCount; ++k) {
+    const std::size_t count = view.blocks[k].count;
+    const std::size_t fields = FieldCountOf(static_cast<PrimitiveKind>(k)) * count;
+    tree.blocks[k].count = view.blocks[k].count;
+    tree.blocks[k].id.AllocateForOverwrite(count + kMaxLanes, kMaxLanes);
+    tree.blocks[k].fields.AllocateForOverwrite(fields + kMaxLanes, kMaxLanes);
+    std::copy_n(view.blocks[k].id, count, tree.blocks[k].id.data());
+  }
+  std::copy_n(bounds.all_lower, 3, tree.all_lower);
+  std::copy_n(bounds.all_upper, 3, tree.all_upper);
+  return tree;
+}
+
+// All of `old` but its tree, and what is known of that.
+template <typename Data, typename Real>
+std::unique_ptr<Data> WithTree(Data&& old, Tree<Real>&& tree) {
+  auto data = std::make_unique<Data>();
+  data->tree = std::move(tree);
+  data->view = data->tree.view();
+  data->scale = old.scale;
+  data->first = std::move(old.first);
+  data->first_triangle = std::move(old.first_triangle);
+  data->kind = std::move(old.kind);
+  data->never_hit = old.never_hit;
+  data->skipped = old.skipped;
+  for (std::size_t k = 0; k < 9; ++k) {
+    data->normal[k / 3][k % 3] = std::move(old.normal[k / 3][k % 3]);
+    data->normals[k] = old.normals[k];
+  }
+  return data;
+}
+
+// Refits a tree of plain meshes without arrays between. Where it is false, because something is not
+// so plain or the tree has become too dear, the long way is to follow; nothing in it can fail then
+// but for want of memory.
+bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, double rebuild_ratio,
                 GeometryAccess::Data<float>& data) {
-  const std::uint32_t hittable = data.tree.of(PrimitiveKind::kTriangle).count;
-  if (meshes.empty() || data.scale != 1 || data.normal[0][0].size() > 0 ||
+  const std::uint32_t hittable = data.view.of(PrimitiveKind::kTriangle).count;
+  if (meshes.empty() || data.file || data.scale != 1 || data.normals[0] ||
       data.first.size() != meshes.size() + 1 || data.first.back() != hittable) {
     return false;
   }
@@ -44,10 +80,10 @@ bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, double rebuild_above,
     if (meshes[i].first != data.first[i] || meshes[i].indices.size() != 3 * count) return false;
   }
   if (!bvh::AreModerate(meshes)) return false;
-  if (data.built_cost < 0) data.built_cost = bvh::CostOfTree(data.tree);
+  if (data.built_cost < 0) data.built_cost = CostOfTree(data.view);
   const bool is_fit = bvh::RefitMeshes(meshes, data.tree);
   data.view = data.tree.view();
-  return is_fit && bvh::CostOfTree(data.tree) <= rebuild_above * data.built_cost;
+  return is_fit && CostOfTree(data.view) <= rebuild_ratio * data.built_cost;
 }
 
 }  // namespace
@@ -69,32 +105,56 @@ std::vector<bvh::FloatMesh> GeometryAccess::PlainMeshes(const GeometryInput& inp
 
 template <typename Real>
 Result<Updated> GeometryOf<Real>::Update(const GeometryInput& input, const UpdateOptions& options) {
-  if (!(options.rebuild_above >= 1)) {
-    return Error{ErrorKind::kUsage,
-                 "rebuild_above is " + std::to_string(options.rebuild_above) + ", at least 1"};
-  }
-  oneapi::tbb::task_arena arena(ThreadCount(options.threads));
   if constexpr (std::is_same_v<Real, float>) {
-    const bool is_refit = data_ && arena.execute([&] {
-      return RefitPlain(GeometryAccess::PlainMeshes(input), options.rebuild_above, *data_);
+    oneapi::tbb::task_arena arena(ThreadCount(options.threads));
+    const bool is_refitted = data_ && options.rebuild_ratio > 0 && arena.execute([&] {
+      return RefitPlain(GeometryAccess::PlainMeshes(input), options.rebuild_ratio, *data_);
     });
-    if (is_refit) return Updated::kRefit;
+    if (is_refitted) return Updated::kRefitted;
   }
-  Result<FlatInputOf<Real>> flattened =
-      GeometryAccess::FlattenTo<Real>(input, {options.threads, options.not_finite});
+  Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(
+      input, {.threads = options.threads, .not_finite = options.not_finite});
   if (!flattened) return flattened.error();
   FlatInputOf<Real>& flat = flattened.value();
   const Real scale = Rescale(flat);
-  if (data_ && data_->first == flat.first && data_->first_triangle == flat.first_triangle) {
-    const bool is_refit =
-        arena.execute([&] { return Refit(flat, scale, options.rebuild_above, *data_); });
-    if (is_refit) {
-      data_->Take(flat, scale);
-      return Updated::kRefit;
-    }
+  const auto rebuild = [&]() -> Result<Updated> {
+    auto built = GeometryAccess::BuildData(flat, scale, options.threads);
+    if (!built) return built.error();
+    data_ = std::move(built).value();
+    return Updated::kRebuilt;
+  };
+  const bool has_same_objects =
+      data_ && data_->first == flat.first && data_->kind == flat.kind && options.rebuild_ratio > 0;
+  if (!has_same_objects) return rebuild();
+  const ObjectIndex objects = IndexOfObjects(flat);
+  const GeometryView<Real> geometry = flat.arrays.view();
+  // Where all are in the tree and can be hit there is nothing to compare.
+  const std::uint32_t absent = flat.never_hit + flat.skipped;
+  const bool has_all = absent == 0 && data_->view.primitive_count() == flat.first.back();
+  if (!has_all && !HasSamePrimitives(data_->view, geometry, objects)) return rebuild();
+
+  if (data_->built_cost < 0) data_->built_cost = CostOfTree(data_->view);
+  Tree<Real> copy;
+  if (data_->file) copy = CopyOf(data_->tree, data_->view);
+  // From here on there is nothing that fails.
+  if (data_->file) data_->tree = std::move(copy);
+  data_->file.reset();
+  data_->file_bytes = 0;
+  RefitTree(geometry, objects, ThreadCount(options.threads), data_->tree);
+  data_->view = data_->tree.view();
+  data_->scale = scale;
+  data_->Take(flat);
+  if (!(CostOfTree(data_->view) > options.rebuild_ratio * data_->built_cost)) {
+    return Updated::kRefitted;
   }
-  const Status built = GeometryAccess::BuildFrom(flat, scale, options.threads, *this);
-  if (!built) return built.error();
+  // The refitted tree is as right, so that it stays where there is no room for a better one.
+  try {
+    Result<Tree<Real>> better = BuildTree(geometry, options.threads);
+    if (!better) return better.error();
+    data_ = WithTree(std::move(*data_), std::move(better).value());
+  } catch (const std::bad_alloc&) {
+    return Updated::kRefitted;
+  }
   return Updated::kRebuilt;
 }
 

@@ -80,7 +80,7 @@ Status Update(sheaf_geometry* geometry, const sheaf_geometry_input* input,
       input->input,
       {.threads = options.threads,
        .not_finite = options.skip_not_finite != 0 ? NotFinite::kSkipped : NotFinite::kRefused,
-       .rebuild_above = options.rebuild_above});
+       .rebuild_ratio = options.rebuild_ratio});
   if (!updated) return updated.error();
   if (rebuilt != nullptr) *rebuilt = updated.value() == Updated::kRebuilt;
   return Done{};

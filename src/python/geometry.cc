@@ -79,11 +79,11 @@ GeometryOf<Real> Build(const py::list& objects, int threads, const std::string& 
 // Whether the tree was built anew.
 template <typename Real>
 bool Update(GeometryOf<Real>& geometry, const py::list& objects, int threads,
-            const std::string& not_finite, double rebuild_above) {
+            const std::string& not_finite, double rebuild_ratio) {
   const Updated updated = WithInput<Real>(objects, [&](const GeometryInput& input) {
     return geometry.Update(input, {.threads = threads,
                                    .not_finite = NotFiniteOf(not_finite),
-                                   .rebuild_above = rebuild_above});
+                                   .rebuild_ratio = rebuild_ratio});
   });
   return updated == Updated::kRebuilt;
 }

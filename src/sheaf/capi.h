@@ -136,8 +136,8 @@ typedef struct sheaf_update_options {
   int32_t threads;          // at most so many; 0: one a core
   int32_t skip_not_finite;  // as of sheaf_build_options
   // A tree that costs more than this many times as much as the last that was built is built anew;
-  // 1 or more.
-  double rebuild_above;
+  // 0 always builds.
+  double rebuild_ratio;
 } sheaf_update_options;
 #define SHEAF_UPDATE_OPTIONS_INIT \
   { sizeof(sheaf_update_options), 0, 0, 1.5 }
@@ -145,9 +145,8 @@ typedef struct sheaf_update_options {
 // Makes of a geometry what sheaf_geometry_build makes of the input, which is faster where
 // primitives have moved and are otherwise as before: the tree is fitted to them, and *rebuilt is 0.
 // It is 1 where the tree was built anew. `options` and `rebuilt` may be NULL. Nobody else may use
-// the geometry meanwhile. Fails as sheaf_geometry_build does, and with SHEAF_USAGE where
-// rebuild_above is below 1; the geometry is then as it was. After SHEAF_OUT_OF_MEMORY it has to be
-// updated again before it is used.
+// the geometry meanwhile. Fails as sheaf_geometry_build does; the geometry is then as it was. After
+// SHEAF_OUT_OF_MEMORY it has to be updated again before it is used.
 SHEAF_API sheaf_status sheaf_geometry_update(sheaf_geometry* geometry,
                                              const sheaf_geometry_input* input,
                                              const sheaf_update_options* options, int32_t* rebuilt);

@@ -23,6 +23,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sheaf/error.h"
@@ -108,16 +109,28 @@ struct BuildOptions {
   NotFinite not_finite = NotFinite::kRefused;
 };
 
+// Update builds the tree anew where moving has made rays so many times as dear as right after the
+// last build, by the surface area heuristic: boxes that overlap more are met more often.
+inline constexpr double kRebuildRatio = 1.5;
+
 struct UpdateOptions {
-  int threads = 0;  // as of BuildOptions
+  int threads = 0;  // as in BuildOptions, and so the next
   NotFinite not_finite = NotFinite::kRefused;
-  // A tree whose cost, by the surface area heuristic, has come to more than this many times that of
-  // the last tree that was built is built anew; 1 or more. Infinity: never for that reason.
-  double rebuild_above = 1.5;
+  // 0 always builds, infinity does not as long as a refit is possible.
+  double rebuild_ratio = kRebuildRatio;
 };
 
-// How a geometry was updated.
-enum class Updated { kRefit, kRebuilt };
+// What an update did.
+enum class Updated {
+  kRefitted,  // the tree is the old one with new boxes
+  kRebuilt,   // built anew
+};
+
+// What Map looks at. A file that is only opened is read where rays need it.
+enum class MapCheck {
+  kAll,     // reads all of it: checksums, every index, and that boxes hold what is in them
+  kHeader,  // header and sizes alone, for a file that is known to be sound: takes no time
+};
 
 // What a geometry is made of, and takes.
 struct GeometryStatistics {
@@ -132,7 +145,8 @@ struct GeometryStatistics {
 };
 
 // Objects with a tree over their primitives; needs nothing of the input any more. Nothing but
-// Update changes one, so that any number of threads may use it; it can be moved, and is then empty.
+// Update and assignment changes one, so that any number of threads may use it; it can be moved, and
+// is then empty.
 template <typename Real>
 class GeometryOf {
  public:
@@ -159,16 +173,25 @@ class GeometryOf {
     return Build(input, BuildOptions{.threads = threads});
   }
 
-  // Makes this what Build(input) makes: rays get the same hits and the same bits. Where `input` has
-  // as many objects, each with as many primitives of its kind, and of these the same can be hit,
-  // the tree is kept and its boxes are fitted to where the primitives are now, in a part of the
-  // time that a build takes; what has moved far from its neighbours makes such a tree slower, and
-  // it is built anew: see UpdateOptions. Anything else is built anew too. Not while others use this
-  // geometry: to trace rays meanwhile keep two and update them in turn. Instances of it have to be
-  // built again. Fails as Build does, and with kUsage where `rebuild_above` is below 1 or a NaN;
-  // the geometry then is what it was. Where memory runs out it has to be
-  // updated or built again before it is used.
+  // Makes the geometry that Build makes of `input`, with the same hits to the bit, whatever it was
+  // before. Where the objects have the same kinds and as many primitives as now, and the same of
+  // these can be hit, as when vertices move, the tree is kept and its boxes are fitted to them,
+  // which takes a fraction of a build. Fails as Build does, and the geometry is what it was before;
+  // where memory runs out it has to be updated again before it is used. No other call may use the
+  // geometry meanwhile, nor instances of it, which have to be built again after it: where pictures
+  // go on, build or update a second one.
   SHEAF_API Result<Updated> Update(const GeometryInput& input, const UpdateOptions& options = {});
+
+  // Writes the geometry with its tree to a file, for Map. The old file or the whole new one is
+  // there, whatever happens. Fails with kInputOutput. docs/geometry.md has the format, which
+  // belongs to the version of Sheaf and the kind of machine.
+  SHEAF_API Status Save(const std::string& path) const;
+  // The geometry of a file that Save wrote: the same hits to the bit. The file is mapped read-only,
+  // and its pages shared with all that map it; it must not be written to meanwhile, but may be
+  // replaced by Save, renamed or removed. Fails with kInputOutput, the path and what is wrong where
+  // it cannot be read or is not such a file: cut off, damaged, of another version, of the other
+  // kind of numbers.
+  SHEAF_API static Result<GeometryOf> Map(const std::string& path, MapCheck check = MapCheck::kAll);
 
   // The smallest box around the primitives, up to a millionth of its size; lower > upper where
   // there are none. x, y, z; the largest float for what is larger.

@@ -270,8 +270,7 @@ def test_an_update_has_the_hits_of_a_new_geometry(dtype):
         rays = ORIGINS.astype(dtype), DIRECTIONS.astype(dtype)
         assert (geometry.closest(*rays).t == fresh.closest(*rays).t).all()
         assert (geometry.bounds == fresh.bounds).all()
-    assert geometry.update(moved[::-1], faces, rebuild_above=numpy.inf) is False
-    with pytest.raises(sheaf.UsageError, match="rebuild_above"):
-        geometry.update(moved, faces, rebuild_above=0.5)
+    assert geometry.update(moved[::-1], faces, rebuild_ratio=numpy.inf) is False
+    assert geometry.update(moved, faces, rebuild_ratio=0) is True
     with pytest.raises(sheaf.UsageError, match="vertex 300 of 300"):
         geometry.update(moved, [[0, 1, 300]])

@@ -59,13 +59,13 @@ class Geometry(Queries):
         disks: Optional[ArrayLike] = None,
         threads: int = 0,
         not_finite: str = "refuse",
-        rebuild_above: float = 1.5,
+        rebuild_ratio: float = 1.5,
     ) -> bool:
         """Becomes what Geometry(...) of the same arguments is: the same hits, to the bit.
 
         Where primitives have moved and are otherwise as before, the tree is fitted to them in a part
         of the time of a build. Returns whether it was built anew instead, because other primitives
-        came, or because it cost more than rebuild_above (1 or more) times as much as the last that
+        came, or because it cost more than rebuild_ratio (0: always) times as much as the last that
         was built.
 
         No other thread may use the geometry meanwhile. Hits that were found before keep what they
@@ -73,7 +73,7 @@ class Geometry(Queries):
         does; the geometry then is as it was.
         """
         objects = self._objects(vertices, faces, normals, spheres, disks, threads, not_finite)
-        rebuilt: bool = self._core.update(objects, threads, not_finite, rebuild_above)
+        rebuilt: bool = self._core.update(objects, threads, not_finite, rebuild_ratio)
         return rebuilt
 
     def _objects(
