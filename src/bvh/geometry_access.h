@@ -41,12 +41,12 @@ struct GeometryOf<Real>::Data {
   std::vector<std::uint32_t> first_triangle{0};  // likewise
   std::vector<PrimitiveKind> kind;               // likewise
   std::uint32_t never_hit = 0, skipped = 0;
-  AlignedArray<Real> normal[3][3];    // by triangle; empty where no mesh has any
-  const Real* normals[9] = {};        // the same by vertex and axis; null where no mesh has any
-  PrimitiveIndex<Real> index;         // made at its first use
-  double built_cost = -1;             // CostOfTree right after the build; below 0: not known yet
-  std::shared_ptr<const void> file;   // the mapping that is shown
-  std::size_t file_bytes = 0;         // of it
+  AlignedArray<Real> normal[3][3];   // by triangle; empty where no mesh has any
+  const Real* normals[9] = {};       // the same by vertex and axis; null where no mesh has any
+  PrimitiveIndex<Real> index;        // made at its first use
+  double built_cost = -1;            // CostOfTree right after the build; below 0: not known yet
+  std::shared_ptr<const void> file;  // the mapping that is shown
+  std::size_t file_bytes = 0;        // of it
 
   // Takes all that is in `flat` but what the tree was built from, which it must be of.
   void Take(FlatInputOf<Real>& flat);
@@ -61,8 +61,9 @@ struct GeometryAccess {
   // The data of a geometry of this input, which Rescale has scaled; consumes it. Fails as BuildTree
   // does.
   template <typename Real>
-  static Result<std::unique_ptr<typename GeometryOf<Real>::Data>> BuildData(
-      FlatInputOf<Real>& flat, Real scale, int threads);
+  static Result<std::unique_ptr<typename GeometryOf<Real>::Data>> BuildData(FlatInputOf<Real>& flat,
+                                                                            Real scale,
+                                                                            int threads);
 
   // Primitives of any kind but triangles, whose numbers are vertices and indices.
   static void Add(GeometryInput& input, PrimitiveKind kind, std::span<const float> fields);

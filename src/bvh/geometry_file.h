@@ -19,9 +19,9 @@ inline constexpr char kFileMagic[8] = {'S', 'H', 'E', 'A', 'F', 'G', 'E', 'O'};
 inline constexpr std::uint32_t kFileByteOrder = 0x01020304;
 inline constexpr std::uint32_t kFileVersion = 1;
 // What arrays are laid out for.
-inline constexpr std::uint32_t kFileLayout[] = {kTreeWidth, kMaxLeafSize,  kMaxTreeDepth, kMaxLanes,
-                                                kIndexBits, kLeafKindShift, kAlignment,
-                                                sizeof(TreeNode)};
+inline constexpr std::uint32_t kFileLayout[] = {kTreeWidth, kMaxLeafSize,    kMaxTreeDepth,
+                                                kMaxLanes,  kIndexBits,      kLeafKindShift,
+                                                kAlignment, sizeof(TreeNode)};
 
 // The parts of the file after the header, in this order: nodes, ids and fields of each kind, first
 // primitive, first triangle and kind of each object, normals by vertex and axis.

@@ -49,11 +49,11 @@ std::string HeaderFault(const FileHeader& header, std::size_t size, std::size_t 
 }
 
 const char* NameOfSection(std::uint32_t section) {
-  return section < bvh::kIds              ? "nodes"
-         : section < bvh::kFields         ? "ids"
-         : section < bvh::kFirst          ? "primitives"
-         : section < bvh::kNormals        ? "objects"
-                                          : "normals";
+  return section < bvh::kIds       ? "nodes"
+         : section < bvh::kFields  ? "ids"
+         : section < bvh::kFirst   ? "primitives"
+         : section < bvh::kNormals ? "objects"
+                                   : "normals";
 }
 
 // What the tree was built from, out of its leaves; "" or what is wrong with a leaf.
@@ -111,8 +111,7 @@ std::string ObjectFault(const typename GeometryAccess::Data<Real>& data) {
 
 template <typename Real>
 std::string BodyFault(const FileHeader& header, const FileSections& sections,
-                      const std::byte* bytes,
-                      const typename GeometryAccess::Data<Real>& data) {
+                      const std::byte* bytes, const typename GeometryAccess::Data<Real>& data) {
   for (std::uint32_t i = 0; i < bvh::kSectionCount; ++i) {
     const std::uint64_t sum = bvh::ChecksumOf(bytes + sections.offset[i], sections.bytes[i]);
     if (sum != header.checksums[i]) return std::string("the ") + NameOfSection(i) + " are damaged";

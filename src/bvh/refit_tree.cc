@@ -88,9 +88,9 @@ class Refitter {
       const std::uint32_t child = node.child[slot];
       if (child == kNoChild) continue;
       ++count;
-      SetBounds(node, slot,
-                IsLeaf(child) ? RefitLeaf(child, find, extent)
-                              : BoundsOfChildren(tree_.nodes[child]));
+      SetBounds(
+          node, slot,
+          IsLeaf(child) ? RefitLeaf(child, find, extent) : BoundsOfChildren(tree_.nodes[child]));
     }
     bvh::OrderChildren(node, count);
   }
@@ -114,13 +114,12 @@ class Refitter {
     Box4 bounds;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t index = find(blocks.id[first + i]);
-      Real* to = block + i;
-      Arrays::ForEachField(arrays, [&](const Real* field) {
-        *to = field[index];
-        to += count;
-      });
+      Real values[Arrays::kFieldCount];
+      Real* next = values;
+      Arrays::ForEachField(arrays, [&](const Real* field) { *next++ = field[index]; });
+      for (std::uint32_t k = 0; k < Arrays::kFieldCount; ++k) block[k * count + i] = values[k];
       PrimitiveBox made;
-      bvh::MakeBox(geometry_, MakePlace(Arrays::kKind, index), made);
+      bvh::MakeFiniteBox<Arrays::kKind>(values, 0, made);
       extent.all.Include(bvh::BoxOf(made));
       if (bvh::IsGiant(made)) {
         made = bvh::GiantBox(made.tag);
@@ -185,7 +184,8 @@ Extent RefitParallel(Refitter<Real>& refitter, const Cut& cut, int threads) {
 double HalfArea(const float (&bounds)[6][kTreeWidth], std::uint32_t slot) {
   double edge[3];
   for (int axis = 0; axis < 3; ++axis) {
-    edge[axis] = static_cast<double>(bounds[3 + axis][slot]) - static_cast<double>(bounds[axis][slot]);
+    edge[axis] =
+        static_cast<double>(bounds[3 + axis][slot]) - static_cast<double>(bounds[axis][slot]);
   }
   return edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0];
 }

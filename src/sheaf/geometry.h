@@ -144,9 +144,9 @@ struct GeometryStatistics {
   std::size_t bytes;                   // of memory, all that the geometry holds
 };
 
-// Objects with a tree over their primitives; needs nothing of the input any more. Nothing but Update
-// and assignment changes one, so that any number of threads may use it; it can be moved, and is then
-// empty.
+// Objects with a tree over their primitives; needs nothing of the input any more. Nothing but
+// Update and assignment changes one, so that any number of threads may use it; it can be moved, and
+// is then empty.
 template <typename Real>
 class GeometryOf {
  public:
