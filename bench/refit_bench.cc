@@ -90,8 +90,8 @@ void Compare(const BenchScene& mesh, int threads, int repetitions) {
   Interleave(contestants, 1);  // pages touched, threads started
   const auto seconds = Interleave(contestants, repetitions);
   const std::size_t best = Median(seconds[0]) < Median(seconds[1]) ? 0 : 1;
-  fmt::print("| {} | {} | {:.1f} / {:.1f} = **{:.2f}** | {:.1f} |\n", mesh.triangle_count(), threads,
-             1e3 * Median(seconds[best]), 1e3 * Median(seconds[2]),
+  fmt::print("| {} | {} | {:.1f} / {:.1f} = **{:.2f}** | {:.1f} |\n", mesh.triangle_count(),
+             threads, 1e3 * Median(seconds[best]), 1e3 * Median(seconds[2]),
              MedianRatio(seconds[best], seconds[2]), 1e3 * Median(seconds[3]));
 }
 
@@ -103,8 +103,9 @@ int Main(int argc, char** argv) {
   app.add_option("--repetitions", repetitions);
   CLI11_PARSE(app, argc, argv);
   const BenchScene mesh = GeodesicSphere(frequency);
-  fmt::print("| triangles | threads | refit, ms: Embree / Sheaf = ratio | build, ms: Sheaf |\n"
-             "|---|---|---|---|\n");
+  fmt::print(
+      "| triangles | threads | refit, ms: Embree / Sheaf = ratio | build, ms: Sheaf |\n"
+      "|---|---|---|---|\n");
   for (const int threads : {1, 2}) Compare(mesh, threads, repetitions);
   return EXIT_SUCCESS;
 }

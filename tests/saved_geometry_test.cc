@@ -108,8 +108,7 @@ TEST_CASE("what is no such file is refused") {
             " expected");
   const Result<GeometryD> doubles = GeometryD::Map(folder / "g");
   REQUIRE(!doubles);
-  CHECK(doubles.error().message ==
-        folder / "g" + ": has numbers of 4 bytes, not of 8");
+  CHECK(doubles.error().message == folder / "g" + ": has numbers of 4 bytes, not of 8");
   CHECK(!Geometry::Map(folder / "absent").ok());
   CHECK(!Geometry::Map(folder / ".").ok());
 
@@ -185,8 +184,7 @@ TEST_CASE("a forged file cannot lead rays astray") {
   CHECK(refusal([&](Forged& f) { f.Section<std::uint32_t>(bvh::kFirst)[1] = 7; }) != "");
   CHECK(refusal([&](Forged& f) { f.Section<std::uint32_t>(bvh::kObjectKind)[0] = 9; }) ==
         "object 0 is of no kind");
-  CHECK(refusal([&](Forged& f) { f.header.scale = 3; }) ==
-        "has a scale that is no power of two");
+  CHECK(refusal([&](Forged& f) { f.header.scale = 3; }) == "has a scale that is no power of two");
   CHECK(refusal([&](Forged& f) { f.header.block_count[0] = 0xffffffffu; }).find(" expected") !=
         std::string::npos);
 }

@@ -14,21 +14,7 @@
 namespace sheaf::bvh {
 namespace {
 
-constexpr float kMax = std::numeric_limits<float>::max();
 constexpr std::uint32_t kBlock = 4096;  // primitives a task; the result does not depend on it
-
-// Stores what contains the primitive exactly, grown. Adding 0 turns -0 into 0.
-void StoreGrown(const float (&lower)[3], const float (&upper)[3], std::uint32_t tag,
-                PrimitiveBox& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = static_cast<double>(lower[axis]), high = static_cast<double>(upper[axis]);
-    const double growth = static_cast<double>(kBoxGrowth) * (high - low);
-    box.lower[axis] = std::max(RoundDown(low - growth), -kMax) + 0.0f;
-    box.upper[axis] = std::min(RoundUp(high + growth), kMax) + 0.0f;
-  }
-  box.tag = tag;
-  box.unused = 0;
-}
 
 template <typename Real>
 BoxState StateOf(const Real* values, int count) {
@@ -51,11 +37,7 @@ BoxState MakeBoxOf(const Arrays& arrays, std::uint32_t index, PrimitiveBox& box)
   if (const BoxState state = StateOf(values, Arrays::kFieldCount); state != BoxState::kFinite) {
     return state;
   }
-  float lower[3], upper[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    Rules<Arrays::kKind>::ExactBounds(values, axis, lower[axis], upper[axis]);
-  }
-  StoreGrown(lower, upper, MakeTag(Arrays::kKind, index), box);
+  MakeFiniteBox<Arrays::kKind>(values, MakeTag(Arrays::kKind, index), box);
   return BoxState::kFinite;
 }
 

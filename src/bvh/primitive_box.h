@@ -2,14 +2,18 @@
 #ifndef SHEAF_BVH_PRIMITIVE_BOX_H_
 #define SHEAF_BVH_PRIMITIVE_BOX_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include "sheaf/error.h"
 #include "simd/tree.h"
 #include "src/bvh/float4.h"
+#include "src/bvh/primitive_rules.h"
+#include "src/bvh/round_outward.h"
 
 namespace sheaf::bvh {
 
@@ -47,6 +51,23 @@ inline bool IsGiant(const PrimitiveBox& box) {
 inline PrimitiveBox GiantBox(std::uint32_t tag) {
   constexpr float kMax = kMaxBoxCoordinate;
   return {{-kMax, -kMax, -kMax}, tag, {kMax, kMax, kMax}, 0};
+}
+
+// The box of a primitive with these fields, all of them finite: what contains it exactly, grown.
+// Adding 0 turns -0 into 0.
+template <PrimitiveKind kKind, typename Real>
+void MakeFiniteBox(const Real* fields, std::uint32_t tag, PrimitiveBox& box) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    float lower, upper;
+    Rules<kKind>::ExactBounds(fields, axis, lower, upper);
+    const double low = static_cast<double>(lower), high = static_cast<double>(upper);
+    const double growth = static_cast<double>(kBoxGrowth) * (high - low);
+    box.lower[axis] = std::max(RoundDown(low - growth), -kMax) + 0.0f;
+    box.upper[axis] = std::min(RoundUp(high + growth), kMax) + 0.0f;
+  }
+  box.tag = tag;
+  box.unused = 0;
 }
 
 enum class BoxState { kFinite, kNever, kInfinite };
