@@ -16,7 +16,7 @@ std::vector<std::int64_t> BitsOf(std::int64_t mask) {
 }
 
 std::int64_t UsableMask() {
-  static const std::int64_t mask = hwy::SupportedTargets() & HWY_TARGETS;
+  static const std::int64_t mask = HWY_SUPPORTED_TARGETS & HWY_TARGETS;
   return mask;
 }
 

@@ -86,7 +86,7 @@ const std::map<std::string, std::set<std::string>>& Below() {
       {"src/stream", kScene},   {"src/bvh", kBvh},       {"src/scalar", kStream},
       {"src/formats", kScene},  {"src/render", kMiddle}, {"src/lab", kRender},
       {"src/capi", kRender},    {"src/python", {}},      {"src/view", kLab},
-      {"src/cluster", kRender}, {"src/app", kView}};
+      {"src/cluster", kRender}, {"src/app", kView},      {"src/web", kRender}};
   return kBelow;
 }
 

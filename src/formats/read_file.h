@@ -18,7 +18,8 @@ Error SceneError(const std::string& path, std::string_view what);
 Error SceneErrorAt(const std::string& path, std::size_t line, std::string_view what);
 
 inline constexpr std::size_t kMaxTextBytes = std::size_t{1} << 30;
-inline constexpr std::size_t kMaxModelBytes = std::size_t{1} << 34;
+// 16 GiB, or what an address of 32 bits can show.
+inline constexpr std::size_t kMaxModelBytes = std::size_t{1} << (sizeof(std::size_t) > 4 ? 34 : 31);
 
 // What reading a file of so many bytes may allocate beside the pictures, meshes and trees that it
 // describes: whatever it claims of itself.

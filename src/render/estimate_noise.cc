@@ -53,7 +53,9 @@ class Band {
     }
     find_medians_(blocks_.data(), 1, width_, MediansOf(y));
   }
-  float* MediansOf(int y) { return medians_.data() + std::ptrdiff_t{stride_} * (y - y0_ - kFirst); }
+  float* MediansOf(int y) {
+    return medians_.data() + static_cast<std::ptrdiff_t>(stride_) * (y - y0_ - kFirst);
+  }
 
   FindMediansKernel<float>* const find_medians_;
   const std::uint32_t width_, stride_;

@@ -169,9 +169,9 @@ void SendOn(const FrameView<Real>& frame, const Path<Real>& path, SampleKey key,
             std::vector<Path<Real>> (&children)[kChildKinds]) {
   const auto& [material, here, base, surface] = at;
   if (!SendsRays(frame, here)) return;
-  const auto append = [&](ChildKind kind, Path<Real>& child) {
+  const auto append = [&, instance = at.surface.instance](ChildKind kind, Path<Real>& child) {
     if (!child.counts(frame.min_throughput)) return;
-    child.ray.instance = surface.instance;
+    child.ray.instance = instance;
     if (frame.is_distributed) child.seed = ChildSeed(path.seed, kind);
     children[static_cast<std::size_t>(kind)].push_back(child);
   };
