@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <string>
 #include <thread>
@@ -322,6 +323,12 @@ TEST_CASE("structures of an older and of a newer header") {
   old.size = 0;
   CHECK(sheaf_trace_closest(geometry.handle, &batch, &hits, &old) == SHEAF_USAGE);
   CHECK(Says("size is not set"));
+  // A number that the enumeration does not have, as C lets it be.
+  old = SHEAF_TRACE_OPTIONS_INIT;
+  const unsigned number = 1000;
+  std::memcpy(&old.coherence, &number, sizeof(number));
+  CHECK(sheaf_trace_closest(geometry.handle, &batch, &hits, &old) == SHEAF_USAGE);
+  CHECK(Says("none of sheaf_coherence"));
 }
 
 TEST_CASE("misuse is a status and a message") {

@@ -23,7 +23,7 @@ Result<Batch> TakeBatch(const sheaf_geometry* geometry, const sheaf_rays* rays,
   if (!batch) return batch;
   sheaf_trace_options options = SHEAF_TRACE_OPTIONS_INIT;
   if (const Status taken = TakeIfGiven(given, "options", &options); !taken) return taken.error();
-  if (static_cast<unsigned>(options.coherence) > SHEAF_INCOHERENT) {
+  if (NumberIn(options.coherence) > SHEAF_INCOHERENT) {
     return UsageError("options: coherence is none of sheaf_coherence");
   }
   const Result<Target> target = TargetOf(options.target);

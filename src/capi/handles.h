@@ -81,6 +81,16 @@ sheaf_status Make(Handle** handle, const char* name, Call&& call) noexcept {
 
 inline Error UsageError(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
 
+// What stands in an enumeration of C, where a caller may write any number. C++ may not read one
+// that it does not name.
+template <typename Enumeration>
+std::size_t NumberIn(const Enumeration& given) {
+  unsigned number = 0;
+  static_assert(sizeof(number) == sizeof(given));
+  std::memcpy(&number, &given, sizeof(number));
+  return number;
+}
+
 // What a caller's structure says, in the structure of today: members that the caller does not know
 // keep the defaults that `own` has; members that the library does not know have to be 0.
 template <typename Struct>

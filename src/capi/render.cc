@@ -59,7 +59,7 @@ Status GetCamera(const sheaf_scene* scene, std::size_t index, sheaf_camera* give
 Result<Camera> CameraOf(const sheaf_camera& given) {
   sheaf_camera view = SHEAF_CAMERA_INIT;
   if (const Status taken = Take(&given, "view", &view); !taken) return taken.error();
-  const auto kind = static_cast<std::size_t>(view.projection);
+  const std::size_t kind = NumberIn(view.projection);
   if (kind >= std::size(kProjectionKinds)) return UsageError("view: projection is none of them");
   Camera camera;
   for (int i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ Result<RenderOptions> OptionsOf(const sheaf_render_options& given) {
   if (std::any_of(crop, crop + 4, [](std::int32_t side) { return side != 0; })) {
     options.crop = PixelRect{crop[0], crop[1], crop[2], crop[3]};
   }
-  if (static_cast<std::size_t>(given.precision) >= std::size(kPrecisions)) {
+  if (NumberIn(given.precision) >= std::size(kPrecisions)) {
     return UsageError("options: precision is none of sheaf_precision");
   }
   options.precision = kPrecisions[given.precision];
@@ -288,7 +288,7 @@ const float* sheaf_film_rgb(const sheaf_film* film) {
 const float* sheaf_film_layer(const sheaf_film* film, sheaf_layer layer) {
   if (film == nullptr) return nullptr;
   for (int i = 0; i < sheaf::kLayerCount; ++i) {
-    if (static_cast<unsigned>(layer) == 1u << i && film->film.has(static_cast<sheaf::Layer>(i))) {
+    if (sheaf::capi::NumberIn(layer) == 1u << i && film->film.has(static_cast<sheaf::Layer>(i))) {
       return film->film.layers[i].data();
     }
   }

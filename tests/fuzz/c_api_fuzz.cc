@@ -1,5 +1,6 @@
 // The C API's calls for rays: objects, strides, ids and numbers that are anything.
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "sheaf/capi.h"
@@ -74,14 +75,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Input input(data, size);
   sheaf_geometry_input* objects = nullptr;
   if (sheaf_geometry_input_create(&objects) != SHEAF_OK) return 0;
+  // The arrays live until the geometry is built, as the header asks.
+  std::deque<std::vector<float>> floats;
+  std::deque<std::vector<std::uint32_t>> lists;
   for (int left = input.Take<std::uint8_t>() % 4; left > 0; --left) {
     const int kind = input.Take<std::uint8_t>() % 3;
     const std::size_t count = input.Take<std::uint8_t>() % 32;
     if (kind == 0) {
-      const std::vector<float> vertices = TakeFloats(input, 3 * count),
-                               normals = TakeFloats(input,
-                                                    input.Take<std::uint8_t>() % 2 ? 3 * count : 0);
-      std::vector<std::uint32_t> indices(3 * (input.Take<std::uint8_t>() % 64));
+      const auto& vertices = floats.emplace_back(TakeFloats(input, 3 * count));
+      const auto& normals =
+          floats.emplace_back(TakeFloats(input, input.Take<std::uint8_t>() % 2 ? 3 * count : 0));
+      auto& indices = lists.emplace_back(3 * (input.Take<std::uint8_t>() % 64));
       for (std::uint32_t& index : indices) {
         index = static_cast<std::uint32_t>(input.Take<std::uint8_t>() % (count + count / 16 + 1));
       }
@@ -91,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!normals.empty()) triangles.normals = normals.data();
       sheaf_add_triangles(objects, &triangles, nullptr);
     } else {
-      const std::vector<float> numbers = TakeFloats(input, (kind == 1 ? 4 : 7) * count);
+      const auto& numbers = floats.emplace_back(TakeFloats(input, (kind == 1 ? 4 : 7) * count));
       (kind == 1 ? sheaf_add_spheres : sheaf_add_disks)(objects, numbers.data(), count, 0, nullptr);
     }
   }

@@ -23,7 +23,8 @@ using namespace sheaf;
 
 // A folder of this process alone, in memory where the system has such.
 std::string Folder() {
-  static const std::string folder = [] {
+  // Never destroyed: it is read at exit.
+  static const std::string& folder = *new std::string([] {
     std::error_code failed;
     const std::filesystem::path memory("/dev/shm");
     const auto root = std::filesystem::is_directory(memory, failed)
@@ -36,7 +37,7 @@ std::string Folder() {
       std::filesystem::remove_all(Folder(), ignored);
     });
     return path.string();
-  }();
+  }());
   return folder;
 }
 
