@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "random_scene.h"
+#include "random_rays.h"
+#include "same_geometry.h"
 #include "sheaf/geometry.h"
 #include "src/bvh/geometry_access.h"
 #include "targets.h"
@@ -65,51 +66,41 @@ struct Shapes {
 };
 
 template <typename Real>
-struct Hits {
-  std::vector<Real> t, u, v;
-  std::vector<std::uint32_t> primitive;
+struct Answers {
+  HitLists<Real> hits;
   std::vector<std::uint32_t> occluded;
-  bool operator==(const Hits& other) const {
-    return std::memcmp(t.data(), other.t.data(), t.size() * sizeof(Real)) == 0 && u == other.u &&
-           v == other.v && primitive == other.primitive && occluded == other.occluded;
+  bool operator==(const Answers& other) const {
+    return SameHits(hits, other.hits) && occluded == other.occluded;
   }
 };
 
+// Of rays through the box around everything, wherever that is.
 template <typename Real>
-Hits<Real> HitsOf(const GeometryOf<Real>& geometry, const Target& target) {
+Answers<Real> AnswersOf(const GeometryOf<Real>& geometry, const Target& target) {
   constexpr std::size_t kRays = 600;
   Random random(3);
-  std::vector<Real> rays[6];
+  RayLists<Real> rays;
   const std::array<float, 3> low = geometry.lower(), high = geometry.upper();
+  const bool has_size = low[0] <= high[0];
   for (std::size_t i = 0; i < kRays; ++i) {
-    const bool has_size = low[0] <= high[0];
+    double from[3], along[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double a = has_size ? static_cast<double>(low[axis]) : -1;
       const double b = has_size ? static_cast<double>(high[axis]) : 1;
-      const double from = Uniform(random, 2 * a - b, 2 * b - a), to = Uniform(random, a, b);
-      rays[axis].push_back(static_cast<Real>(from));
-      rays[3 + axis].push_back(static_cast<Real>(to - from));
+      from[axis] = Uniform(random, 2 * a - b, 2 * b - a);
+      along[axis] = Uniform(random, a, b) - from[axis];
     }
+    scalar::Ray<Real> ray;
+    ray.origin = Vec3<double>{from[0], from[1], from[2]}.To<Real>();
+    ray.direction = Vec3<double>{along[0], along[1], along[2]}.To<Real>();
+    ray.source = kNoPrimitive;
+    rays.Add(ray);
   }
-  RayArraysOf<Real> arrays;
-  arrays.origin_x = rays[0].data();
-  arrays.origin_y = rays[1].data();
-  arrays.origin_z = rays[2].data();
-  arrays.direction_x = rays[3].data();
-  arrays.direction_y = rays[4].data();
-  arrays.direction_z = rays[5].data();
-  Hits<Real> hits{std::vector<Real>(kRays), std::vector<Real>(kRays), std::vector<Real>(kRays),
-                  std::vector<std::uint32_t>(kRays), std::vector<std::uint32_t>(kRays)};
-  HitArraysOf<Real> to;
-  to.t = hits.t.data();
-  to.u = hits.u.data();
-  to.v = hits.v.data();
-  to.primitive = hits.primitive.data();
-  TraceOptionsOf<Real> options;
-  options.target = target;
-  REQUIRE(TraceClosest(geometry, arrays, kRays, to, options));
-  REQUIRE(TraceOccluded(geometry, arrays, kRays, hits.occluded.data(), options));
-  return hits;
+  Answers<Real> answers{HitLists<Real>(kRays), std::vector<std::uint32_t>(kRays)};
+  const TraceOptionsOf<Real> options{.target = target};
+  REQUIRE(TraceClosest(geometry, rays.view(), kRays, answers.hits.view(), options));
+  REQUIRE(TraceOccluded(geometry, rays.view(), kRays, answers.occluded.data(), options));
+  return answers;
 }
 
 template <typename Real>
@@ -120,9 +111,9 @@ void CheckLikeBuilt(const GeometryOf<Real>& updated, const GeometryInput& input)
   CHECK(updated.upper() == built.value().upper());
   CHECK(updated.statistics().never_hit == built.value().statistics().never_hit);
   CHECK(updated.statistics().primitives == built.value().statistics().primitives);
-  const Hits<Real> scalar = HitsOf(built.value(), Target::Scalar());
-  CHECK(HitsOf(updated, Target::Scalar()) == scalar);
-  ForEachTarget([&](Target target) { CHECK(HitsOf(updated, target) == scalar); });
+  const Answers<Real> scalar = AnswersOf(built.value(), Target::Scalar());
+  CHECK(AnswersOf(updated, Target::Scalar()) == scalar);
+  ForEachTarget([&](Target target) { CHECK(AnswersOf(updated, target) == scalar); });
 }
 
 TEST_CASE_TEMPLATE("updates have the hits of a build", Real, float, double) {
@@ -214,13 +205,17 @@ TEST_CASE("meshes of floats, which take a shorter way") {
   vertices = floats();
   REQUIRE(geometry.Update(input_of(vertices, shapes)));
   CheckLikeBuilt(geometry, input_of(vertices, shapes));
-  const Hits<float> before = HitsOf(geometry, Target::Scalar());
+  const Answers<float> before = AnswersOf(geometry, Target::Scalar());
+  GeometryInput bare;
+  bare.AddTriangles(std::span(vertices).first(0), std::span(shapes.indices).first(999));
+  bare.AddTriangles(vertices, std::span(shapes.indices).subspan(999));
+  CHECK(!geometry.Update(bare));
   vertices[7] = std::numeric_limits<float>::infinity();
   CHECK(!geometry.Update(input_of(vertices, shapes)));
   vertices = floats();
   shapes.indices[5] = 1000000;
   CHECK(!geometry.Update(input_of(vertices, shapes)));
-  CHECK(HitsOf(geometry, Target::Scalar()) == before);
+  CHECK(AnswersOf(geometry, Target::Scalar()) == before);
 }
 
 TEST_CASE("the tree is kept as long as it is good enough") {
@@ -298,14 +293,14 @@ TEST_CASE("what is refused leaves the geometry as it was") {
   const Shapes shapes(10);
   auto built = Geometry::Build(shapes.Input());
   REQUIRE(built);
-  const Hits<float> before = HitsOf(built.value(), Target::Scalar());
+  const Answers<float> before = AnswersOf(built.value(), Target::Scalar());
   Shapes broken = shapes;
   broken.vertices[31] = std::numeric_limits<double>::quiet_NaN();
   const auto refused = built.value().Update(broken.Input());
   REQUIRE(!refused);
   CHECK(refused.error().kind == ErrorKind::kUsage);
   CHECK(refused.error().message.find("object 1, triangle") != std::string::npos);
-  CHECK(HitsOf(built.value(), Target::Scalar()) == before);
+  CHECK(AnswersOf(built.value(), Target::Scalar()) == before);
   const UpdateOptions options = {.not_finite = NotFinite::kSkipped};
   REQUIRE(built.value().Update(broken.Input(), options));
   CHECK(built.value().statistics().skipped >= 1);

@@ -20,6 +20,10 @@ std::optional<Exposure> ParseExposure(const std::string& text) {
   return ev ? std::optional(Exposure{*ev}) : std::nullopt;
 }
 
+Exposure ExposureOf(const LookOptions& given, const Settings& settings) {
+  return given.exposure.value_or(Exposure{settings.ev});
+}
+
 }  // namespace
 
 void AddLookOptions(CLI::App& app, LookOptions& look) {
@@ -46,7 +50,7 @@ Tone ToneOf(const LookOptions& given, Tone otherwise) {
 }
 
 bool IsMetered(const LookOptions& given, const Settings& settings) {
-  return !given.exposure.value_or(Exposure{settings.ev}).ev;
+  return !ExposureOf(given, settings).ev;
 }
 
 Result<Look> ChooseLook(const LookOptions& given, const Renderer& renderer, const Camera& camera,
@@ -54,7 +58,7 @@ Result<Look> ChooseLook(const LookOptions& given, const Renderer& renderer, cons
   Look look;
   const Settings& settings = renderer.scene().settings;
   look.tone = ToneOf(given, settings.tone);
-  const Exposure exposure = given.exposure.value_or(Exposure{settings.ev});
+  const Exposure exposure = ExposureOf(given, settings);
   if (exposure.ev) {
     look.ev = *exposure.ev;
     return look;

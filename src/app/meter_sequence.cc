@@ -4,7 +4,6 @@
 #include <map>
 
 #include "src/app/choose_look.h"
-#include "src/app/plan_frames.h"
 #include "src/formats/picture.h"
 
 namespace sheaf {
@@ -17,17 +16,12 @@ bool IsMeteredOnce(const RenderRequest& request, const Scene& scene,
 }
 
 Status MeterSequence(const RenderRequest& request, const RenderOptions& options,
-                     OpenedScene* opened, std::vector<Frame>* frames) {
-  if (frames->front().number != kMeteredFrame) {
-    const Status posed = PoseScene(request.scene, OptionsAt(request, kMeteredFrame), opened);
-    if (!posed) return posed;
-  }
-  const Renderer renderer(opened->scene);
+                     const Renderer& renderer, std::vector<Frame>* frames) {
   std::map<std::size_t, Look> looks;  // by camera
   for (Frame& frame : *frames) {
     const auto [place, is_new] = looks.try_emplace(frame.camera_index);
     if (is_new) {
-      const Camera& camera = opened->scene.cameras[frame.camera_index];
+      const Camera& camera = renderer.scene().cameras[frame.camera_index];
       const Result<Look> look = ChooseLook(request.look, renderer, camera, options);
       if (!look) return look.error();
       place->second = look.value();

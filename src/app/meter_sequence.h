@@ -8,7 +8,6 @@
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
 #include "src/app/frame_writer.h"
-#include "src/app/open_scene.h"
 #include "src/app/render_request.h"
 
 namespace sheaf {
@@ -21,9 +20,9 @@ inline constexpr int kMeteredFrame = 0;
 bool IsMeteredOnce(const RenderRequest& request, const Scene& scene,
                    const std::vector<Frame>& frames);
 
-// Gives each frame the look of kMeteredFrame by its camera. Leaves the scene there.
+// Gives each frame the look of kMeteredFrame, at which the renderer's scene is, by its camera.
 Status MeterSequence(const RenderRequest& request, const RenderOptions& options,
-                     OpenedScene* opened, std::vector<Frame>* frames);
+                     const Renderer& renderer, std::vector<Frame>* frames);
 
 }  // namespace sheaf
 

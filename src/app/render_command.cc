@@ -86,12 +86,20 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
   SequencePace pace(frames.size());
   std::vector<FrameRecord> records;
   std::optional<int> posed = frames.front().number;
-  if (IsMeteredOnce(request, opened->scene, frames)) {
-    const Status metered = MeterSequence(request, options, opened, &frames);
-    if (!metered) return metered.error();
-    posed = kMeteredFrame;
-  }
   Renderer renderer(opened->scene);
+  const auto pose_at = [&](int frame) -> Status {
+    const Status moved = PoseScene(request.scene, OptionsAt(request, frame), opened);
+    posed = frame;
+    renderer = Renderer(opened->scene);
+    return moved;
+  };
+  if (IsMeteredOnce(request, opened->scene, frames)) {
+    if (posed != kMeteredFrame) {
+      if (const Status moved = pose_at(kMeteredFrame); !moved) return moved.error();
+    }
+    const Status metered = MeterSequence(request, options, renderer, &frames);
+    if (!metered) return metered.error();
+  }
   for (Frame& frame : frames) {
     const std::vector<std::string> files = FilesOf(frame);
     if (journal && journal->Has(files)) {
@@ -103,10 +111,7 @@ Result<std::vector<FrameRecord>> RenderFrames(const RenderRequest& request,
       continue;
     }
     if (frame.number != posed) {
-      const Status moved = PoseScene(request.scene, OptionsAt(request, *frame.number), opened);
-      if (!moved) return moved.error();
-      posed = frame.number;
-      renderer = Renderer(opened->scene);
+      if (const Status moved = pose_at(*frame.number); !moved) return moved.error();
     }
     frame.camera = &opened->scene.cameras[frame.camera_index];
     Result<FrameRecord> record =

@@ -26,15 +26,13 @@ inline void StoreChild(const Box4& box, std::uint32_t child, TreeNode& node) {
   }
 }
 
-// Absent children come last.
-inline std::uint32_t CountChildren(const TreeNode& node) {
-  const auto* const end = std::find(node.child, node.child + kTreeWidth, kNoChild);
-  return static_cast<std::uint32_t>(end - node.child);
-}
-
+// Around its children. Absent ones have a box of nothing.
 inline Box4 BoxOfNode(const TreeNode& node) {
   Box4 box;
-  for (std::uint32_t i = 0; i < CountChildren(node); ++i) box.Include(ChildBox(node, i));
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = *std::min_element(node.bounds[axis], node.bounds[axis] + kTreeWidth);
+    box.upper[axis] = *std::max_element(node.bounds[3 + axis], node.bounds[3 + axis] + kTreeWidth);
+  }
   return box;
 }
 

@@ -53,18 +53,22 @@ inline PrimitiveBox GiantBox(std::uint32_t tag) {
   return {{-kMax, -kMax, -kMax}, tag, {kMax, kMax, kMax}, 0};
 }
 
-// The box of a primitive with these fields, all of them finite: what contains it exactly, grown.
-// Adding 0 turns -0 into 0.
+// What contains lower to upper exactly, grown. Adding 0 turns -0 into 0.
+inline void Grow(float lower, float upper, float& grown_lower, float& grown_upper) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  const double low = static_cast<double>(lower), high = static_cast<double>(upper);
+  const double growth = static_cast<double>(kBoxGrowth) * (high - low);
+  grown_lower = std::max(RoundDown(low - growth), -kMax) + 0.0f;
+  grown_upper = std::min(RoundUp(high + growth), kMax) + 0.0f;
+}
+
+// The box of a primitive with these fields, all of them finite.
 template <PrimitiveKind kKind, typename Real>
 void MakeFiniteBox(const Real* fields, std::uint32_t tag, PrimitiveBox& box) {
-  constexpr float kMax = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 3; ++axis) {
     float lower, upper;
     Rules<kKind>::ExactBounds(fields, axis, lower, upper);
-    const double low = static_cast<double>(lower), high = static_cast<double>(upper);
-    const double growth = static_cast<double>(kBoxGrowth) * (high - low);
-    box.lower[axis] = std::max(RoundDown(low - growth), -kMax) + 0.0f;
-    box.upper[axis] = std::min(RoundUp(high + growth), kMax) + 0.0f;
+    Grow(lower, upper, box.lower[axis], box.upper[axis]);
   }
   box.tag = tag;
   box.unused = 0;

@@ -8,25 +8,12 @@
 #include <iterator>
 #include <limits>
 
-#include "src/bvh/node_boxes.h"
-#include "src/bvh/order_children.h"
 #include "src/bvh/primitive_box.h"
-#include "src/bvh/round_outward.h"
+#include "src/bvh/refit_nodes.h"
 #include "src/core/has_area.h"
 
 namespace sheaf::bvh {
 namespace {
-
-constexpr std::uint32_t kNodesATask = 256;
-
-// Calls work(first, end, block) for blocks of nodes [0, count), kNodesATask each, in parallel.
-template <typename Work>
-void ForNodes(std::uint32_t count, const Work& work) {
-  oneapi::tbb::parallel_for(0u, (count + kNodesATask - 1) / kNodesATask, [&](std::uint32_t block) {
-    const std::uint32_t first = block * kNodesATask;
-    work(first, std::min(first + kNodesATask, count), block);
-  });
-}
 
 constexpr std::size_t kNumbersATask = 1 << 16;
 // Coordinates below this are scaled by nothing, and their grown boxes are no giants'.
@@ -87,17 +74,12 @@ bool HasPlainArea(const Float4 (&vertex)[3]) {
   return HasArea(exact) && LargestArea(exact) >= kLeastArea;
 }
 
-// As PrimitiveBox has it, of what lies within a box.
 Box4 Grown(const Box4& box) {
-  Box4 grown;
+  float lower[4] = {}, upper[4] = {};
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = static_cast<double>(box.lower[axis]);
-    const double high = static_cast<double>(box.upper[axis]);
-    const double growth = static_cast<double>(kBoxGrowth) * (high - low);
-    grown.lower[axis] = RoundDown(low - growth) + 0.0f;
-    grown.upper[axis] = RoundUp(high + growth) + 0.0f;
+    Grow(box.lower[axis], box.upper[axis], lower[axis], upper[axis]);
   }
-  return grown;
+  return {.lower = Load4(lower), .upper = Load4(upper)};
 }
 
 Box4 BoxAround(const Float4 (&vertex)[3]) {
@@ -106,35 +88,27 @@ Box4 BoxAround(const Float4 (&vertex)[3]) {
   return box;
 }
 
-// Makes the boxes of inner nodes, and all orders, where the boxes of leaves are right.
-void RefitNodes(std::uint32_t count, TreeNode* nodes) {
-  // Every node comes before its children.
-  for (std::uint32_t i = count; i-- > 0;) {
-    for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-      const std::uint32_t child = nodes[i].child[slot];
-      if (!IsLeaf(child)) StoreChild(BoxOfNode(nodes[child]), slot, nodes[i]);
-    }
-  }
-  ForNodes(count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
-    for (std::uint32_t i = first; i < end; ++i) OrderChildren(nodes[i], CountChildren(nodes[i]));
-  });
-}
+// Whether no triangle takes a closer look.
+struct Plainness {
+  bool is_plain = true;
+
+  void Include(const Plainness& more) { is_plain &= more.is_plain; }
+};
 
 class MeshLeaves {
  public:
   MeshLeaves(const std::vector<FloatMesh>& meshes, Tree<float>& tree)
       : meshes_(meshes), blocks_(tree.of(PrimitiveKind::kTriangle)) {}
 
-  // Writes a leaf's triangles and its box; false where one has no plain area.
-  bool Refit(std::uint32_t leaf, Box4& box) {
+  // Writes a leaf's triangles; returns the box around them.
+  Box4 Refit(std::uint32_t leaf, Plainness& found) {
     const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
     float* const to = blocks_.fields.data() + std::size_t{9} * first;
     Box4 bounds;
-    bool is_plain = true;
     for (std::uint32_t i = 0; i < count; ++i) {
       Float4 vertex[3];
       Load(blocks_.id.data()[first + i], vertex);
-      is_plain &= HasPlainArea(vertex);
+      found.is_plain &= HasPlainArea(vertex);
       for (std::uint32_t k = 0; k < 3; ++k) {
         bounds.Include(vertex[k], vertex[k]);
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -142,8 +116,7 @@ class MeshLeaves {
         }
       }
     }
-    box = Grown(bounds);
-    return is_plain;
+    return Grown(bounds);
   }
 
   // Around a leaf's triangles, each of them grown.
@@ -192,10 +165,10 @@ class ReachFinder {
  private:
   void Look(std::uint32_t index, int row, float& best) const {
     const TreeNode& node = nodes_[index];
-    for (std::uint32_t slot = 0; slot < CountChildren(node); ++slot) {
+    for (std::uint32_t slot = 0; slot < kTreeWidth; ++slot) {
       const float bound = node.bounds[row][slot];
-      if (!((row < 3 ? bound : -bound) < best)) continue;
       const std::uint32_t child = node.child[slot];
+      if (child == kNoChild || !((row < 3 ? bound : -bound) < best)) continue;
       if (!IsLeaf(child)) {
         Look(child, row, best);
         continue;
@@ -227,24 +200,13 @@ bool AreModerate(const std::vector<FloatMesh>& meshes) {
 }
 
 bool RefitMeshes(const std::vector<FloatMesh>& meshes, Tree<float>& tree) {
-  TreeNode* const nodes = tree.nodes.data();
   MeshLeaves leaves(meshes, tree);
-  std::atomic<bool> is_plain = true;
-  ForNodes(tree.node_count, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
-    bool are_plain = true;
-    for (std::uint32_t i = first; i < end; ++i) {
-      for (std::uint32_t slot = 0; slot < CountChildren(nodes[i]); ++slot) {
-        const std::uint32_t child = nodes[i].child[slot];
-        if (!IsLeaf(child)) continue;
-        Box4 box;
-        are_plain &= leaves.Refit(child, box);
-        StoreChild(box, slot, nodes[i]);
-      }
-    }
-    if (!are_plain) is_plain = false;
-  });
-  if (!is_plain) return false;
-  RefitNodes(tree.node_count, nodes);
+  const auto fit_leaf = [&](std::uint32_t leaf, Plainness& found) {
+    return leaves.Refit(leaf, found);
+  };
+  Plainness whole;
+  RefitNodes(tree.node_count, tree.nodes.data(), fit_leaf, whole);
+  if (!whole.is_plain) return false;
   Box4 all;
   const ReachFinder reach(tree, leaves);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,15 +1,12 @@
 #include "src/bvh/refit_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <mutex>
 
 #include "src/bvh/find_split.h"
 #include "src/bvh/float4.h"
 #include "src/bvh/node_boxes.h"
-#include "src/bvh/order_children.h"
 #include "src/bvh/primitive_box.h"
-#include "src/core/parallel.h"
+#include "src/bvh/refit_nodes.h"
 
 namespace sheaf {
 namespace {
@@ -17,32 +14,20 @@ namespace {
 using bvh::Box4;
 using bvh::PrimitiveBox;
 
-// The last levels above the subtrees that are refitted side by side; the nodes in these levels.
-constexpr std::uint32_t kTopLevels = 3;
-constexpr std::size_t kMaxTops = 1 + 8 + 64, kMaxSubtrees = 512;
-
-// Ids to positions. Neighbours in a leaf are mostly of one object.
-class IndexFinder {
- public:
-  explicit IndexFinder(const ObjectIndex& objects) : objects_(objects) {}
-
-  std::uint32_t operator()(std::uint32_t id) {
-    const std::vector<std::uint32_t>& first = objects_.first;
-    if (!(first[object_] <= id && id < first[object_ + 1])) {
-      const auto after = std::upper_bound(first.begin(), first.end(), id);
-      object_ = static_cast<std::size_t>(after - first.begin() - 1);
-    }
-    return objects_.index[object_] + (id - first[object_]);
+// Ids to positions. Neighbours in a leaf are mostly of one object, the last that was asked for.
+std::uint32_t PositionOf(std::uint32_t id, const ObjectIndex& objects, std::size_t& object) {
+  const std::vector<std::uint32_t>& first = objects.first;
+  if (!(first[object] <= id && id < first[object + 1])) {
+    const auto after = std::upper_bound(first.begin(), first.end(), id);
+    object = static_cast<std::size_t>(after - first.begin() - 1);
   }
+  return objects.index[object] + (id - first[object]);
+}
 
- private:
-  const ObjectIndex& objects_;
-  std::size_t object_ = 0;
-};
-
-// What lies within a tree: as PrimitiveBoxes has them.
+// What lies within leaves: as PrimitiveBoxes has them.
 struct Extent {
   Box4 all, others;
+  std::size_t object = 0;  // of the last primitive
 
   void Include(const Extent& extent) {
     all.Include(extent.all);
@@ -50,109 +35,31 @@ struct Extent {
   }
 };
 
-template <typename Real>
-class Refitter {
- public:
-  Refitter(const GeometryView<Real>& geometry, const ObjectIndex& objects, Tree<Real>& tree)
-      : geometry_(geometry), objects_(objects), tree_(tree) {}
-
-  // Recurses as deep as the tree is.
-  void RefitBelow(std::uint32_t index, IndexFinder& find, Extent& extent) {
-    for (const std::uint32_t child : tree_.nodes[index].child) {
-      if (!IsLeaf(child)) RefitBelow(child, find, extent);
-    }
-    RefitNode(index, find, extent);
-  }
-
-  // A node above fitted ones.
-  void RefitNode(std::uint32_t index, IndexFinder& find, Extent& extent) {
-    TreeNode& node = tree_.nodes[index];
-    std::uint32_t count = 0;
-    for (std::uint32_t slot = 0; slot < kTreeWidth; ++slot) {
-      const std::uint32_t child = node.child[slot];
-      if (child == kNoChild) continue;
-      ++count;
-      bvh::StoreChild(
-          IsLeaf(child) ? RefitLeaf(child, find, extent) : bvh::BoxOfNode(tree_.nodes[child]), slot,
-          node);
-    }
-    bvh::OrderChildren(node, count);
-  }
-
-  IndexFinder finder() const { return IndexFinder(objects_); }
-
- private:
-  Box4 RefitLeaf(std::uint32_t leaf, IndexFinder& find, Extent& extent) {
-    Box4 box;
-    ForEachKind(geometry_, [&](const auto& arrays) {
-      if (arrays.kKind == LeafKind(leaf)) box = RefitLeafOf(leaf, arrays, find, extent);
+// Writes a leaf's primitives; returns the box around them.
+template <typename Real, typename Arrays>
+Box4 RefitLeaf(std::uint32_t leaf, const Arrays& arrays, const GeometryView<Real>& geometry,
+               const ObjectIndex& objects, PrimitiveBlocks<Real>& blocks, Extent& extent) {
+  const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
+  Real* const block = blocks.fields.data() + std::size_t{Arrays::kFieldCount} * first;
+  Box4 bounds;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t index = PositionOf(blocks.id[first + i], objects, extent.object);
+    Real* to = block + i;
+    Arrays::ForEachField(arrays, [&](const Real* field) {
+      *to = field[index];
+      to += count;
     });
-    return box;
-  }
-
-  template <typename Arrays>
-  Box4 RefitLeafOf(std::uint32_t leaf, const Arrays& arrays, IndexFinder& find, Extent& extent) {
-    PrimitiveBlocks<Real>& blocks = tree_.of(Arrays::kKind);
-    const std::uint32_t first = LeafFirst(leaf), count = LeafCount(leaf);
-    Real* const block = blocks.fields.data() + std::size_t{Arrays::kFieldCount} * first;
-    Box4 bounds;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t index = find(blocks.id[first + i]);
-      Real* to = block + i;
-      Arrays::ForEachField(arrays, [&](const Real* field) {
-        *to = field[index];
-        to += count;
-      });
-      PrimitiveBox made;
-      bvh::MakeBox(geometry_, MakePlace(Arrays::kKind, index), made);
-      extent.all.Include(bvh::BoxOf(made));
-      if (bvh::IsGiant(made)) {
-        made = bvh::GiantBox(made.tag);
-      } else {
-        extent.others.Include(bvh::BoxOf(made));
-      }
-      bounds.Include(bvh::BoxOf(made));
+    PrimitiveBox made;
+    bvh::MakeBox(geometry, MakePlace(Arrays::kKind, index), made);
+    extent.all.Include(bvh::BoxOf(made));
+    if (bvh::IsGiant(made)) {
+      made = bvh::GiantBox(made.tag);
+    } else {
+      extent.others.Include(bvh::BoxOf(made));
     }
-    return bounds;
+    bounds.Include(bvh::BoxOf(made));
   }
-
-  const GeometryView<Real>& geometry_;
-  const ObjectIndex& objects_;
-  Tree<Real>& tree_;
-};
-
-// The nodes of the first levels in the order of the tree, and what hangs below them.
-struct Cut {
-  std::array<std::uint32_t, kMaxTops> tops;
-  std::array<std::uint32_t, kMaxSubtrees> subtrees;
-  std::size_t top_count = 0, subtree_count = 0;
-
-  void Add(const TreeNode* nodes, std::uint32_t index, std::uint32_t level) {
-    if (level == kTopLevels) {
-      subtrees[subtree_count++] = index;
-      return;
-    }
-    tops[top_count++] = index;
-    for (const std::uint32_t child : nodes[index].child) {
-      if (!IsLeaf(child)) Add(nodes, child, level + 1);
-    }
-  }
-};
-
-template <typename Real>
-Extent RefitParallel(Refitter<Real>& refitter, const Cut& cut, int threads) {
-  std::mutex mutex;
-  Extent extent;
-  ParallelFor(threads, cut.subtree_count, [&](int, std::uint64_t i) {
-    IndexFinder find = refitter.finder();
-    Extent part;
-    refitter.RefitBelow(cut.subtrees[i], find, part);
-    const std::lock_guard<std::mutex> lock(mutex);
-    extent.Include(part);
-  });
-  IndexFinder find = refitter.finder();
-  for (std::size_t i = cut.top_count; i-- > 0;) refitter.RefitNode(cut.tops[i], find, extent);
-  return extent;
+  return bounds;
 }
 
 // Half the surface, in double, where no extent overflows; 0 of a giant's.
@@ -177,8 +84,9 @@ double CostOfTree(const TreeView<Real>& tree) {
   double cost = 0;
   for (std::uint32_t i = 0; i < tree.node_count; ++i) {
     const TreeNode& node = tree.nodes[i];
-    for (std::uint32_t slot = 0; slot < bvh::CountChildren(node); ++slot) {
+    for (std::uint32_t slot = 0; slot < kTreeWidth; ++slot) {
       const std::uint32_t child = node.child[slot];
+      if (child == kNoChild) continue;
       const double primitives = IsLeaf(child) ? LeafCount(child) : 0;
       cost += AreaOf(bvh::ChildBox(node, slot)) *
               (double{bvh::kBlockCost} + primitives * double{bvh::kPrimitiveCost});
@@ -203,31 +111,27 @@ bool HasSamePrimitives(const TreeView<Real>& tree, const GeometryView<Real>& geo
     std::uint32_t there = 0;
     for (std::uint32_t i = 0; i < arrays.count; ++i) there += is_there(i);
     is_same &= there == block.count;
-    IndexFinder find(objects);
+    std::size_t object = 0;
     for (std::uint32_t i = 0; i < block.count && is_same; ++i) {
-      is_same = is_there(find(block.id[i]));
+      is_same = is_there(PositionOf(block.id[i], objects, object));
     }
   });
   return is_same;
 }
 
 template <typename Real>
-void RefitTree(const GeometryView<Real>& geometry, const ObjectIndex& objects, int threads,
-               Tree<Real>& tree) noexcept {
-  if (tree.node_count == 0) return;
-  Refitter<Real> refitter(geometry, objects, tree);
-  Cut cut;
-  cut.Add(tree.nodes.data(), 0, 0);
-  Extent extent;
-  try {
-    extent = RefitParallel(refitter, cut, threads);
-  } catch (...) {
-    // There is no memory for a loop's tasks. Half a tree is of no use, and one thread needs none.
-    extent = Extent();
-    IndexFinder find = refitter.finder();
-    refitter.RefitBelow(0, find, extent);
-  }
-  tree.SetBounds(extent.all, extent.others);
+void RefitTree(const GeometryView<Real>& geometry, const ObjectIndex& objects, Tree<Real>& tree) {
+  const auto fit_leaf = [&](std::uint32_t leaf, Extent& extent) {
+    Box4 box;
+    ForEachKind(geometry, [&](const auto& arrays) {
+      if (arrays.kKind != LeafKind(leaf)) return;
+      box = RefitLeaf(leaf, arrays, geometry, objects, tree.of(arrays.kKind), extent);
+    });
+    return box;
+  };
+  Extent whole;
+  bvh::RefitNodes(tree.node_count, tree.nodes.data(), fit_leaf, whole);
+  tree.SetBounds(whole.all, whole.others);
 }
 
 template double CostOfTree(const TreeView<float>&);
@@ -236,8 +140,7 @@ template bool HasSamePrimitives(const TreeView<float>&, const GeometryView<float
                                 const ObjectIndex&);
 template bool HasSamePrimitives(const TreeView<double>&, const GeometryView<double>&,
                                 const ObjectIndex&);
-template void RefitTree(const GeometryView<float>&, const ObjectIndex&, int, Tree<float>&) noexcept;
-template void RefitTree(const GeometryView<double>&, const ObjectIndex&, int,
-                        Tree<double>&) noexcept;
+template void RefitTree(const GeometryView<float>&, const ObjectIndex&, Tree<float>&);
+template void RefitTree(const GeometryView<double>&, const ObjectIndex&, Tree<double>&);
 
 }  // namespace sheaf

@@ -29,10 +29,9 @@ bool HasSamePrimitives(const TreeView<Real>& tree, const GeometryView<Real>& geo
 
 // Takes the fields of all primitives from `geometry`, none of which is infinite, and fits boxes and
 // orders to them. For trees with HasSamePrimitives. It is then one that FindTreeDefect finds sound,
-// and does not depend on `threads`. Throws nothing.
+// and does not depend on the number of threads, which are those of the caller's arena.
 template <typename Real>
-void RefitTree(const GeometryView<Real>& geometry, const ObjectIndex& objects, int threads,
-               Tree<Real>& tree) noexcept;
+void RefitTree(const GeometryView<Real>& geometry, const ObjectIndex& objects, Tree<Real>& tree);
 
 }  // namespace sheaf
 

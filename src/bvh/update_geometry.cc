@@ -26,10 +26,11 @@ ObjectIndex IndexOfObjects(const FlatInputOf<Real>& flat) {
   return objects;
 }
 
-// A tree's arrays for one that only shows them.
+// A tree's arrays for one that only shows them; what RefitTree writes is left open.
 template <typename Real>
-Tree<Real> CopyOf(const Tree<Real>& bounds, const TreeView<Real>& view) {
+Tree<Real> CopyOf(const TreeView<Real>& view) {
   Tree<Real> tree;
+  tree.SetBounds({}, {});
   tree.node_count = view.node_count;
   tree.nodes.AllocateForOverwrite(view.node_count, 0);
   std::copy_n(view.nodes, view.node_count, tree.nodes.data());
@@ -41,35 +42,18 @@ Tree<Real> CopyOf(const Tree<Real>& bounds, const TreeView<Real>& view) {
     tree.blocks[k].fields.AllocateForOverwrite(fields + kMaxLanes, kMaxLanes);
     std::copy_n(view.blocks[k].id, count, tree.blocks[k].id.data());
   }
-  std::copy_n(bounds.all_lower, 3, tree.all_lower);
-  std::copy_n(bounds.all_upper, 3, tree.all_upper);
   return tree;
 }
 
-// All of `old` but its tree, and what is known of that.
-template <typename Data, typename Real>
-std::unique_ptr<Data> WithTree(Data&& old, Tree<Real>&& tree) {
-  auto data = std::make_unique<Data>();
-  data->tree = std::move(tree);
-  data->view = data->tree.view();
-  data->scale = old.scale;
-  data->first = std::move(old.first);
-  data->first_triangle = std::move(old.first_triangle);
-  data->kind = std::move(old.kind);
-  data->never_hit = old.never_hit;
-  data->skipped = old.skipped;
-  for (std::size_t k = 0; k < 9; ++k) {
-    data->normal[k / 3][k % 3] = std::move(old.normal[k / 3][k % 3]);
-    data->normals[k] = old.normals[k];
-  }
-  return data;
+// Whether the tree costs more than a new one may save.
+template <typename Data>
+bool IsTooDear(const Data& data, double rebuild_ratio) {
+  return CostOfTree(data.view) > rebuild_ratio * data.built_cost;
 }
 
-// Refits a tree of plain meshes without arrays between. Where it is false, because something is not
-// so plain or the tree has become too dear, the long way is to follow; nothing in it can fail then
-// but for want of memory.
-bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, double rebuild_ratio,
-                GeometryAccess::Data<float>& data) {
+// Refits a tree of plain meshes without arrays between. Where something is not so plain it is
+// false, and the long way is to follow; nothing in that can fail then but for want of memory.
+bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, GeometryAccess::Data<float>& data) {
   const std::uint32_t hittable = data.view.of(PrimitiveKind::kTriangle).count;
   if (meshes.empty() || data.file || data.scale != 1 || data.normals[0] ||
       data.first.size() != meshes.size() + 1 || data.first.back() != hittable) {
@@ -83,7 +67,7 @@ bool RefitPlain(const std::vector<bvh::FloatMesh>& meshes, double rebuild_ratio,
   if (data.built_cost < 0) data.built_cost = CostOfTree(data.view);
   const bool is_fit = bvh::RefitMeshes(meshes, data.tree);
   data.view = data.tree.view();
-  return is_fit && CostOfTree(data.view) <= rebuild_ratio * data.built_cost;
+  return is_fit;
 }
 
 }  // namespace
@@ -93,9 +77,10 @@ std::vector<bvh::FloatMesh> GeometryAccess::PlainMeshes(const GeometryInput& inp
   std::size_t first = 0;
   for (const auto& [kind, numbers, indices, normals] : input.objects_) {
     const bool is_plain = kind == 0 && normals.floats.empty() && normals.doubles.empty() &&
-                          numbers.floats.data() != nullptr && numbers.floats.size() % 3 == 0 &&
-                          indices.data() != nullptr && indices.size() % 3 == 0 &&
-                          !indices.empty() && first <= kMaxTreePrimitives;
+                          !numbers.floats.empty() && numbers.floats.data() != nullptr &&
+                          numbers.floats.size() % 3 == 0 && indices.data() != nullptr &&
+                          indices.size() % 3 == 0 && !indices.empty() &&
+                          first <= kMaxTreePrimitives;
     if (!is_plain) return {};
     meshes.push_back({numbers.floats, indices, static_cast<std::uint32_t>(first)});
     first += indices.size() / 3;
@@ -105,12 +90,13 @@ std::vector<bvh::FloatMesh> GeometryAccess::PlainMeshes(const GeometryInput& inp
 
 template <typename Real>
 Result<Updated> GeometryOf<Real>::Update(const GeometryInput& input, const UpdateOptions& options) {
+  oneapi::tbb::task_arena arena(ThreadCount(options.threads));
+  bool is_refitted = false;
   if constexpr (std::is_same_v<Real, float>) {
-    oneapi::tbb::task_arena arena(ThreadCount(options.threads));
-    const bool is_refitted = data_ && options.rebuild_ratio > 0 && arena.execute([&] {
-      return RefitPlain(GeometryAccess::PlainMeshes(input), options.rebuild_ratio, *data_);
+    is_refitted = data_ && options.rebuild_ratio > 0 && arena.execute([&] {
+      return RefitPlain(GeometryAccess::PlainMeshes(input), *data_);
     });
-    if (is_refitted) return Updated::kRefitted;
+    if (is_refitted && !IsTooDear(*data_, options.rebuild_ratio)) return Updated::kRefitted;
   }
   Result<FlatInputOf<Real>> flattened = GeometryAccess::FlattenTo<Real>(
       input, {.threads = options.threads, .not_finite = options.not_finite});
@@ -123,39 +109,37 @@ Result<Updated> GeometryOf<Real>::Update(const GeometryInput& input, const Updat
     data_ = std::move(built).value();
     return Updated::kRebuilt;
   };
-  const bool has_same_objects =
-      data_ && data_->first == flat.first && data_->kind == flat.kind && options.rebuild_ratio > 0;
-  if (!has_same_objects) return rebuild();
-  const ObjectIndex objects = IndexOfObjects(flat);
-  const GeometryView<Real> geometry = flat.arrays.view();
-  // Where all are in the tree and can be hit there is nothing to compare.
-  const std::uint32_t absent = flat.never_hit + flat.skipped;
-  const bool has_all = absent == 0 && data_->view.primitive_count() == flat.first.back();
-  if (!has_all && !HasSamePrimitives(data_->view, geometry, objects)) return rebuild();
+  if (!is_refitted) {
+    const bool has_same_objects = data_ && data_->first == flat.first && data_->kind == flat.kind &&
+                                  options.rebuild_ratio > 0;
+    if (!has_same_objects) return rebuild();
+    const ObjectIndex objects = IndexOfObjects(flat);
+    const GeometryView<Real> geometry = flat.arrays.view();
+    // Where all are in the tree and can be hit there is nothing to compare.
+    const std::uint32_t absent = flat.never_hit + flat.skipped;
+    const bool has_all = absent == 0 && data_->view.primitive_count() == flat.first.back();
+    if (!has_all && !HasSamePrimitives(data_->view, geometry, objects)) return rebuild();
 
-  if (data_->built_cost < 0) data_->built_cost = CostOfTree(data_->view);
-  Tree<Real> copy;
-  if (data_->file) copy = CopyOf(data_->tree, data_->view);
-  // From here on there is nothing that fails.
-  if (data_->file) data_->tree = std::move(copy);
-  data_->file.reset();
-  data_->file_bytes = 0;
-  RefitTree(geometry, objects, ThreadCount(options.threads), data_->tree);
-  data_->view = data_->tree.view();
-  data_->scale = scale;
+    if (data_->built_cost < 0) data_->built_cost = CostOfTree(data_->view);
+    if (data_->file) {
+      data_->tree = CopyOf(data_->view);
+      data_->view = data_->tree.view();
+      data_->file.reset();
+      data_->file_bytes = 0;
+    }
+    arena.execute([&] { RefitTree(geometry, objects, data_->tree); });
+    data_->view = data_->tree.view();
+    data_->scale = scale;
+  }
+  if (IsTooDear(*data_, options.rebuild_ratio)) {
+    try {
+      return rebuild();
+    } catch (const std::bad_alloc&) {
+      // The refitted tree is as right, so that it stays where there is no room for a better one.
+    }
+  }
   data_->Take(flat);
-  if (!(CostOfTree(data_->view) > options.rebuild_ratio * data_->built_cost)) {
-    return Updated::kRefitted;
-  }
-  // The refitted tree is as right, so that it stays where there is no room for a better one.
-  try {
-    Result<Tree<Real>> better = BuildTree(geometry, options.threads);
-    if (!better) return better.error();
-    data_ = WithTree(std::move(*data_), std::move(better).value());
-  } catch (const std::bad_alloc&) {
-    return Updated::kRefitted;
-  }
-  return Updated::kRebuilt;
+  return Updated::kRefitted;
 }
 
 template Result<Updated> GeometryOf<float>::Update(const GeometryInput&, const UpdateOptions&);
