@@ -143,11 +143,13 @@ TEST_CASE("a journal of a scene that has changed since is begun anew") {
       "0,40,256,1000", "--aov", "depth,normal", "-o",       work / "a.pfm", "--threads", "1",
       "--resume",      "--json"};
   const std::string pfm_journal = work / ".a.pfm.sheaf-journal";
+  // A band is 192 rows of 256 pixels of 28 bytes: 1.4 MB. Less may be one that is half written.
+  constexpr std::uintmax_t kTwoBands = 3 << 20;
   std::vector<std::string> plain = command;
   plain[11] = work / "plain.pfm";
   plain.erase(plain.end() - 2);
   REQUIRE(work.Run(plain).code == 0);
-  LeaveJournal(work, command, pfm_journal, 1 << 20);
+  LeaveJournal(work, command, pfm_journal, kTwoBands);
   const Outcome outcome = work.Run(command);
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
@@ -156,7 +158,7 @@ TEST_CASE("a journal of a scene that has changed since is begun anew") {
     CHECK(ReadText(work / ("a" + std::string(layer) + ".pfm")) ==
           ReadText(work / ("plain" + std::string(layer) + ".pfm")));
   }
-  LeaveJournal(work, command, pfm_journal, 1 << 20);
+  LeaveJournal(work, command, pfm_journal, kTwoBands);
   WriteText(scene, ReadText(kScene) + "\n// changed\n");
   const Outcome changed = work.Run(command);
   CHECK(changed.code == 0);
@@ -182,6 +184,9 @@ TEST_CASE("a sequence keeps what is finished, and what is still as it was") {
       const std::string name = std::to_string(i) + ".png";
       CHECK(ReadText(work / ("a" + name)) == ReadText(work / ("whole" + name)));
     }
+    std::string names;
+    for (const std::string& name : work.Files()) names += name + " ";
+    CAPTURE(names);
     CHECK(work.Files().size() == 12);  // no journals
   };
   check_all();
