@@ -50,7 +50,7 @@ bool AllSound(std::span<const Number> numbers, const AreSound& are_sound) {
   return all;
 }
 
-Float4 Rotated(Float4 v) { return __builtin_shuffle(v, Int4{1, 2, 0, 3}); }
+Float4 Rotated(Float4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
 Float4 Magnitude(Float4 v) { return Max(v, -v); }
 
 // A vertex and, where there is one, the number after it.
