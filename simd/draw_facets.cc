@@ -6,6 +6,7 @@
 #include "hwy/highway.h"
 #include "simd/dispatch.h"
 #include "simd/frame-inl.h"
+#include "simd/material-inl.h"
 #include "simd/math-inl.h"
 #include "simd/query.h"
 #include "simd/sin_cos-inl.h"
@@ -14,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace sheaf::simd::HWY_NAMESPACE {
 
 template <class D, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE void DrawFacet(D d, Real slope_width, V nx, V ny, V nz, V ox, V oy, V oz, V height, V u,
-                          V v, V& fx, V& fy, V& fz) {
-  const V one = hn::Set(d, Real(1)), zero = hn::Zero(d), width = hn::Set(d, slope_width);
+HWY_INLINE void DrawFacet(D d, V width, V nx, V ny, V nz, V ox, V oy, V oz, V height, V u, V v,
+                          V& fx, V& fy, V& fz) {
+  const V one = hn::Set(d, Real(1)), zero = hn::Zero(d);
   V xx, xy, xz, yx, yy, yz;
   MakeFrame(d, nx, ny, nz, xx, xy, xz, yx, yy, yz);
   V sx = hn::Mul(Dot(d, xx, xy, xz, ox, oy, oz), width);
@@ -42,9 +43,10 @@ HWY_INLINE void DrawFacet(D d, Real slope_width, V nx, V ny, V nz, V ox, V oy, V
   fz = turned(xz, yz, nz);
 }
 
-// The tables of both sides follow one another.
+// The tables of both sides follow one another, and then those of other widths.
 template <class D, class DI, class V = hn::Vec<D>, typename Real = hn::TFromD<D>>
-HWY_INLINE V GlossAt(D d, DI di, const MaterialData<Real>& material, V height, hn::Vec<DI> source) {
+HWY_INLINE V GlossAt(D d, DI di, const MaterialData<Real>& material, V width, V height,
+                     hn::Vec<DI> source) {
   using Id = hn::TFromD<DI>;
   const V one = hn::Set(d, Real(1)), zero = hn::Zero(d);
   const V below_one = hn::IfThenElse(hn::Lt(height, one), height, one);
@@ -56,9 +58,20 @@ HWY_INLINE V GlossAt(D d, DI di, const MaterialData<Real>& material, V height, h
   const auto side = hn::IfThenElseZero(inside, hn::Set(di, Id{kGlossEntries}));
   const hn::RebindToSigned<D> ds;
   const auto i = hn::Add(hn::BitCast(di, hn::ConvertTo(ds, step)), side);
-  const V low = GatherAt(d, material.gloss, i);
-  const V high = GatherAt(d, material.gloss + 1, i);
-  return hn::Add(low, hn::Mul(hn::Sub(high, low), hn::Sub(along, step)));
+  const auto between = [&](hn::Vec<DI> at) SHEAF_LAMBDA {
+    const V low = GatherAt(d, material.gloss, at);
+    const V high = GatherAt(d, material.gloss + 1, at);
+    return hn::Add(low, hn::Mul(hn::Sub(high, low), hn::Sub(along, step)));
+  };
+  if (!material.finish.has_facets) return between(i);
+  const V across = hn::Mul(hn::Sqrt(width), hn::Set(d, Real(kGlossRowSteps))),
+          row = hn::Floor(across);
+  // Multiplied as numbers, which are small: not every target multiplies long integers.
+  const V before = hn::Mul(row, hn::Set(d, Real(2 * kGlossEntries)));
+  const auto begin = hn::Add(i, hn::BitCast(di, hn::ConvertTo(ds, before)));
+  const auto end = hn::Add(begin, hn::Set(di, Id{2 * kGlossEntries}));
+  const V low = between(begin);
+  return hn::Add(low, hn::Mul(hn::Sub(between(end), low), hn::Sub(across, row)));
 }
 
 template <typename Real>
@@ -76,13 +89,14 @@ void DrawFacetsLanes(const MaterialData<Real>& material, const SurfaceView<Real>
     const V oy = hn::Neg(hn::LoadU(d, surfaces.direction_y + i));
     const V oz = hn::Neg(hn::LoadU(d, surfaces.direction_z + i));
     const V height = Dot(d, nx, ny, nz, ox, oy, oz);
+    const V width = LoadTerm(d, material, material.slope_width, surfaces.slope_width, i);
     V fx, fy, fz;
-    DrawFacet(d, material.slope_width, nx, ny, nz, ox, oy, oz, height, hn::LoadU(d, points.u + i),
+    DrawFacet(d, width, nx, ny, nz, ox, oy, oz, height, hn::LoadU(d, points.u + i),
               hn::LoadU(d, points.v + i), fx, fy, fz);
     hn::StoreU(fx, d, facets.facet_x + i);
     hn::StoreU(fy, d, facets.facet_y + i);
     hn::StoreU(fz, d, facets.facet_z + i);
-    hn::StoreU(GlossAt(d, di, material, height, LoadIds(d, surfaces.source + i)), d,
+    hn::StoreU(GlossAt(d, di, material, width, height, LoadIds(d, surfaces.source + i)), d,
                facets.gloss + i);
   }
 }

@@ -36,9 +36,12 @@ inline constexpr std::uint32_t kNeedsVertexAlpha = 8192;
 inline constexpr std::uint32_t kNeedsSecondSet = 16384;  // of coordinates; textures make it
 
 // A table of gloss has kGlossEntries numbers for rays that arrive from outside, for square roots of
-// cosines from 0 to 1 in kGlossSteps steps, then as many for rays from inside.
+// cosines from 0 to 1 in kGlossSteps steps, then as many for rays from inside. Where slopes vary in
+// width kGlossRows of these follow one another, for square roots of widths from 0 to 1.
 inline constexpr int kGlossSteps = 64;
 inline constexpr int kGlossEntries = kGlossSteps + 2;  // the last twice, to be read beside 1
+inline constexpr int kGlossRowSteps = 16;
+inline constexpr int kGlossRows = kGlossRowSteps + 2;  // likewise
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};
 enum class AlphaUse : std::uint32_t { kOpaque, kMask, kBlend };
@@ -49,6 +52,9 @@ struct FinishData {
   // Indices into the frame's textures.
   std::uint32_t emission = kNoTexture, metallic_roughness = kNoTexture, occlusion = kNoTexture,
                 transmission = kNoTexture, normals = kNoTexture;
+  // Whether metal and roughness make the terms, with or without a texture, and whether their
+  // mirrors have facets that are drawn, whose slopes vary in width.
+  bool is_glossy = false, has_facets = false;
   Real metallic = 0, roughness = 0, specular = 1;
   Real occlusion_strength = 0, transmission_share = 0, normal_scale = 0;
   AlphaUse alpha = AlphaUse::kOpaque;
@@ -74,7 +80,7 @@ struct MaterialData {
   Real passes[3];  // of a light behind: `transmit`, or 0 where shadows are opaque
   Real ior;
   // Of microfacets: the width of their slopes, 0 for a smooth surface, and what takes the place of
-  // light that they send to one another: a table of gloss.
+  // light that they send to one another: a table of gloss, of several rows with has_facets.
   Real slope_width = 0;
   const Real* gloss = nullptr;
   // With which its triangles are drawn as a light, by area; 0: they are not.
@@ -92,7 +98,7 @@ constexpr bool AnyPositive(const Real (&c)[3]) {
 // What the textures besides that of the base colour ask for.
 template <typename Real>
 constexpr std::uint32_t NeedsOf(const FinishData<Real>& finish) {
-  const bool is_glossy = finish.metallic_roughness != kNoTexture;
+  const bool is_glossy = finish.is_glossy;
   const bool has_alpha = finish.alpha != AlphaUse::kOpaque;
   const bool varies = is_glossy || has_alpha || finish.emission != kNoTexture ||
                       finish.occlusion != kNoTexture || finish.transmission != kNoTexture;
@@ -100,7 +106,14 @@ constexpr std::uint32_t NeedsOf(const FinishData<Real>& finish) {
   return (varies ? kNeedsTerms | kNeedsCoordinates : 0) |
          (is_bumpy ? kNeedsNormals | kNeedsCoordinates : 0) |
          (is_glossy ? kNeedsLights | kNeedsHighlight | kNeedsChildren : 0) |
+         (finish.has_facets ? kNeedsGloss : 0) |
          (has_alpha ? kNeedsChildren | kNeedsTransmission : 0);
+}
+
+// Whether its rays are mirrored and bent at facets that are drawn. They may be smooth at a point.
+template <typename Real>
+constexpr bool HasFacets(const MaterialData<Real>& material) {
+  return material.slope_width > 0 || material.finish.has_facets;
 }
 
 template <typename Real>
@@ -113,7 +126,7 @@ constexpr std::uint32_t NeedsOf(const MaterialData<Real>& material) {
          (material.kind == BaseColour::kTexture ? kNeedsTint : 0) |
          (material.kind == BaseColour::kFilteredChecker ? kNeedsFootprint | kNeedsWidth : 0) |
          (transmits || AnyPositive(material.reflect) ? kNeedsChildren : 0) |
-         (material.slope_width > 0 ? kNeedsGloss : 0) | (transmits ? kNeedsTransmission : 0);
+         (HasFacets(material) ? kNeedsGloss : 0) | (transmits ? kNeedsTransmission : 0);
 }
 
 // Whether some of a light goes on behind the surface.

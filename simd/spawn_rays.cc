@@ -21,8 +21,8 @@ HWY_INLINE V GlossShare(D d, const MaterialData<Real>& material, const SurfaceVi
                         std::uint32_t i, V n_dot_child, V side) {
   const V one = hn::Set(d, Real(1)), two = hn::Set(d, Real(2));
   const V cosine = hn::Mul(n_dot_child, side), square = hn::Mul(cosine, cosine);
-  const V spread =
-      hn::Mul(hn::Set(d, material.slope_width * material.slope_width), hn::Sub(one, square));
+  const V width = LoadTerm(d, material, material.slope_width, surfaces.slope_width, i);
+  const V spread = hn::Mul(hn::Mul(width, width), hn::Sub(one, square));
   const V unmasked =
       hn::Div(hn::Mul(two, cosine), hn::Add(cosine, hn::Sqrt(hn::Add(square, spread))));
   const V above = hn::IfThenElseZero(hn::Gt(cosine, hn::Zero(d)), unmasked);

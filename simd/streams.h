@@ -102,6 +102,7 @@ struct SurfaceFields {
   Field<Real> kd, ks, shininess;
   Field<Real> reflect_r, reflect_g, reflect_b;
   Field<Real> transmit_r, transmit_g, transmit_b;
+  Field<Real> slope_width;
   Field<Real> width;                     // of the ray's cone; with kNeedsWidth
   Field<Real> footprint_u, footprint_v;  // how much of u and v it covers; with kNeedsFootprint
   // With kNeedsGloss: the normal that rays are mirrored and bent at, and what their throughputs are
@@ -127,13 +128,13 @@ struct SurfaceFields {
       &SurfaceFields::emission_r, &SurfaceFields::emission_g, &SurfaceFields::emission_b,
       &SurfaceFields::kd, &SurfaceFields::ks, &SurfaceFields::shininess, &SurfaceFields::reflect_r,
       &SurfaceFields::reflect_g, &SurfaceFields::reflect_b, &SurfaceFields::transmit_r,
-      &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::shadow_x,
-      &SurfaceFields::shadow_y, &SurfaceFields::shadow_z, &SurfaceFields::bend,
-      &SurfaceFields::width, &SurfaceFields::footprint_u, &SurfaceFields::footprint_v,
-      &SurfaceFields::facet_x, &SurfaceFields::facet_y, &SurfaceFields::facet_z,
-      &SurfaceFields::gloss, &SurfaceFields::choice_reflect, &SurfaceFields::choice_refract,
-      &SurfaceFields::choice_diffuse, &SurfaceFields::scatter, &SurfaceFields::alpha,
-      &SurfaceFields::u2, &SurfaceFields::v2, &SurfaceFields::footprint_u2,
+      &SurfaceFields::transmit_g, &SurfaceFields::transmit_b, &SurfaceFields::slope_width,
+      &SurfaceFields::shadow_x, &SurfaceFields::shadow_y, &SurfaceFields::shadow_z,
+      &SurfaceFields::bend, &SurfaceFields::width, &SurfaceFields::footprint_u,
+      &SurfaceFields::footprint_v, &SurfaceFields::facet_x, &SurfaceFields::facet_y,
+      &SurfaceFields::facet_z, &SurfaceFields::gloss, &SurfaceFields::choice_reflect,
+      &SurfaceFields::choice_refract, &SurfaceFields::choice_diffuse, &SurfaceFields::scatter,
+      &SurfaceFields::alpha, &SurfaceFields::u2, &SurfaceFields::v2, &SurfaceFields::footprint_u2,
       &SurfaceFields::footprint_v2);
 };
 

@@ -8,6 +8,7 @@
 
 #include "model_files.h"
 #include "same_bits.h"
+#include "src/scene/resolve_gloss.h"
 
 namespace sheaf {
 namespace {
@@ -171,13 +172,16 @@ TEST_CASE("glTF extensions that are required and harmless") {
 }
 
 TEST_CASE("glTF metals mirror, and shine with nothing else") {
-  const auto read = [](double metallic, double roughness, const json& extensions) {
+  const auto read_only = [](double metallic, double roughness, const json& extensions) {
     return ReadGltf(TexturedGltf({{"extensions", extensions},
                                   {"pbrMetallicRoughness",
                                    {{"baseColorFactor", {1, 0.5, 0.25, 1}},
                                     {"metallicFactor", metallic},
                                     {"roughnessFactor", roughness}}}}))
         .material;
+  };
+  const auto read = [&](double metallic, double roughness, const json& extensions) {
+    return ResolveGloss(read_only(metallic, roughness, extensions), GlossModel::kFading);
   };
   const Material polished = read(1, 0, json::object());
   CHECK(polished.ambient == 0);
@@ -205,6 +209,20 @@ TEST_CASE("glTF metals mirror, and shine with nothing else") {
   CHECK(painted.kd == 1 - 0.25 * 0.5);
   CHECK(painted.ambient == doctest::Approx(0.25 * (1 - 0.25 * 0.25)));
 
+  // Where facets are drawn a metal is a mirror, however rough, and glass is as rough as it says.
+  const auto with_facets = [&](double metallic, double roughness, const json& extensions) {
+    return ResolveGloss(read_only(metallic, roughness, extensions), GlossModel::kFacets);
+  };
+  const Material rough = with_facets(1, 0.5, json::object());
+  CHECK(rough.reflect == Colour(1, 0.5, 0.25));
+  CHECK(rough.roughness == 0.5);
+  CHECK(rough.kd == 0);
+  CHECK(rough.ambient == 0);
+  CHECK(with_facets(0, 0.5, json::object()).reflect == Colour(0.0));
+  glass["KHR_materials_transmission"].erase("transmissionTexture");
+  CHECK(with_facets(0, 0.5, glass).roughness == 0.5);
+  CHECK(with_facets(0, 0.5, glass).transmit == Colour(1, 0.5, 0.25));
+
   json specular;
   specular["KHR_materials_specular"]["specularFactor"] = 0.5;
   CHECK(read(0, 0.5, json::object()).ks == 0.1);
@@ -218,7 +236,7 @@ TEST_CASE("glTF of specular colour and glossiness") {
     gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
     const Read all = ReadGltf(gltf);
     CHECK(all.warnings.empty());
-    return all.material;
+    return ResolveGloss(all.material, GlossModel::kFading);
   };
   const Material painted =
       read({{"diffuseTexture", kTexture0}, {"diffuseFactor", {1, 0.5, 0.5, 1}}});

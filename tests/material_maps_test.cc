@@ -43,6 +43,7 @@ TEST_CASE("metal and roughness are Whitted's terms at each point") {
   varied.kd = 1;
   varied.metallic_roughness = {RowOf({Texel(0, 51, 255), Texel(0, 204, 0)}), 1, 1};
   Scene scene = SheetScene(varied);
+  scene.settings.integrator = Integrator::kWhitted;
   scene.lights = {{"", DirectionalLight{{0.3, 0.1, -1}}, Colour(1.0), 0.7}};
   const auto got = RowIn(scene, 2);
   // Smooth metal, then rough plastic, by the table in docs/formats.md.
@@ -61,6 +62,39 @@ TEST_CASE("metal and roughness are Whitted's terms at each point") {
     const auto want = RowIn(same, 2)[static_cast<std::size_t>(i)];
     for (int c = 0; c < 3; ++c) {
       CHECK(got[static_cast<std::size_t>(i)][c] == doctest::Approx(want[c]).epsilon(1e-4));
+    }
+  }
+}
+
+// The same samples are drawn for a texture of metal and roughness as for materials of one each.
+TEST_CASE("where facets are drawn a rough metal is a rough mirror at each point") {
+  Material varied;
+  varied.base_colour = Colour(0.8, 0.4, 0.2);
+  varied.kd = 1;
+  varied.metallic_roughness = {RowOf({Texel(0, 102, 255), Texel(0, 204, 255)}), 1, 1};
+  Scene scene = SheetScene(varied);
+  scene.settings.environment = Gradient{Colour(0.1), Colour(0.9, 0.5, 0.3), Colour(0.0)};
+  scene.settings.samples = 64;
+  for (const Integrator integrator : {Integrator::kDistributed, Integrator::kPath}) {
+    scene.settings.integrator = integrator;
+    const auto got = RowIn(scene, 2);
+    const double roughness[] = {0.4, 0.8};
+    for (std::size_t i = 0; i < 2; ++i) {
+      Material plain = varied;
+      plain.metallic_roughness.reset();
+      plain.kd = 0;
+      plain.reflect = Colour(0.8, 0.4, 0.2);
+      plain.roughness = roughness[i];
+      Scene same = scene;
+      same.materials = {plain};
+      const auto want = RowIn(same, 2)[i];
+      for (int c = 0; c < 3; ++c) CHECK(got[i][c] == doctest::Approx(want[c]).epsilon(4e-3));
+      CHECK(got[i].x > 0.01);
+      // Without a texture it is that material to the bit, but where the base colour varies.
+      same.materials[0].reflect = Colour(0.0);
+      same.materials[0].kd = 1;
+      same.materials[0].metallic_roughness = {{}, 1, roughness[i]};
+      CHECK(RowIn(same, 2)[i] == want);
     }
   }
 }
@@ -264,7 +298,11 @@ TEST_CASE("materials that vary have the same bits on every target") {
         material.emission = Colour(0.1, 0.2, 0.3);
         material.emission_texture = RandomTexture(random);
       }
-      if (random() % 2) material.metallic_roughness = {RandomTexture(random), 0.9, 0.8};
+      if (random() % 2) {
+        material.metallic_roughness = {RandomTexture(random), 0.9, 0.8};
+      } else if (random() % 2) {
+        material.metallic_roughness = {{}, 0.6, 0.7};
+      }
       if (random() % 2) material.occlusion = {RandomTexture(random), 0.7};
       if (random() % 2) material.transmission = {RandomTexture(random), 0.8};
       if (random() % 2) material.normal_map = {RandomTexture(random), 0.6};
@@ -276,7 +314,10 @@ TEST_CASE("materials that vary have the same bits on every target") {
     options.height = 47;
     for (const Precision precision : {Precision::kStrict, Precision::kDouble}) {
       options.precision = precision;
-      CheckSameBits(scene, scene.cameras[0], options);
+      for (const Integrator integrator : kIntegrators) {
+        options.integrator = integrator;
+        CheckSameBits(scene, scene.cameras[0], options);
+      }
     }
   }
 }
@@ -310,7 +351,8 @@ TEST_CASE("maps of materials are written and read back") {
     "transmission": {"texture": {"image": "t.png"}, "share": 0.625},
     "occlusion": {"texture": {"image": "t.png"}, "strength": 0.75},
     "normal_map": {"texture": {"image": "t.png"}, "scale": -2},
-    "alpha": {"mode": "mask", "factor": 0.5, "cutoff": 0.125}}],
+    "alpha": {"mode": "mask", "factor": 0.5, "cutoff": 0.125}},
+    {"name": "b", "metallic_roughness": {"metallic": 0.5}}],
     "cameras": [{"name": "c", "eye": [0, 0, 5], "look_at": [0, 0, 0]}]})";
   const Scene first = ReadOrFail(folder.Write("a.json", text));
   const Scene again = ReadOrFail(folder.Write("b.json", SceneJsonText(first)));
@@ -333,6 +375,10 @@ TEST_CASE("maps of materials are written and read back") {
     CHECK(material.alpha.mode == AlphaMode::kMask);
     CHECK(material.alpha.factor == 0.5);
     CHECK(material.alpha.cutoff == 0.125);
+    REQUIRE(scene->materials[1].metallic_roughness.has_value());
+    CHECK(scene->materials[1].metallic_roughness->texture.image == nullptr);
+    CHECK(scene->materials[1].metallic_roughness->metallic == 0.5);
+    CHECK(scene->materials[1].metallic_roughness->roughness == 1);
   }
   CheckRefused(folder.Write("c.json", R"({"materials": [{"name": "a",
     "alpha": {"mode": "cutout"}}], "cameras": []})"),

@@ -106,8 +106,9 @@ SceneSummary Summarize(const Scene& scene) {
       {"highlights", !scene.lights.empty() && any_material([](const Material& m) {
          return m.ks > 0.0 || m.metallic_roughness;
        })},
-      {"mirror reflection",
-       any_material([](const Material& m) { return !IsBlack(m.reflect) || m.metallic_roughness; })},
+      {"mirror reflection", any_material([](const Material& m) {
+         return m.metallic_roughness ? m.metallic_roughness->metallic > 0 : !IsBlack(m.reflect);
+       })},
       {"refraction and Fresnel reflection",
        any_material([](const Material& m) { return !IsBlack(m.transmit); })},
   };

@@ -33,18 +33,6 @@ namespace {
 double Share(double number) { return std::clamp(number, 0.0, 1.0); }
 double Largest(const Colour& colour) { return std::max({colour.x, colour.y, colour.z}); }
 
-// The highlights and mirrors of a metallic-roughness surface, and its ambient light: a metal has
-// none on top of its mirror.
-void SetGloss(double metallic, double roughness, double specular, Material* material,
-              const Colour& base) {
-  const Gloss<double> gloss = GlossOf(metallic, roughness, specular);
-  material->kd *= gloss.kd;
-  material->ks = gloss.ks;
-  material->shininess = gloss.shininess;
-  material->ambient *= gloss.ambient;
-  material->reflect = glm::min(base, Colour(1.0)) * gloss.mirror;
-}
-
 // Seen as it is, whatever lights there are.
 void MakeUnlit(const Colour& base, Material* material) {
   material->emission = base;
@@ -161,15 +149,16 @@ bool GltfMaterials::ReadMaterial(std::size_t index) {
   if (is_unlit) {
     MakeUnlit(surface.base, &material);
   } else {
-    // Where a texture says how metallic a point is the renderer does the rest.
+    // What a metal lets through is taken from what is no metal of it. The renderer does the rest.
     const bool is_even = !material.metallic_roughness;
-    const double metallic = is_even ? surface.metallic : 0;
-    const double through = surface.transmission * (1 - metallic);
+    const double through = surface.transmission * (is_even ? 1 - surface.metallic : 1.0);
     const double taken = material.transmission ? 0 : through;
     material.kd = 1 - taken;
     material.ambient = kModelAmbient * (1 - taken);
-    material.transmit = through * glm::min(surface.base, Colour(1.0));
-    SetGloss(metallic, surface.roughness, surface.specular, &material, surface.base);
+    material.transmit = surface.transmission * glm::min(surface.base, Colour(1.0));
+    if (is_even) {
+      material.metallic_roughness = {{}, surface.metallic, surface.roughness, surface.specular};
+    }
   }
   const std::string fault = FaultOf(material, surface.base);
   if (!fault.empty()) return document_.Fail(place, fault);
@@ -274,9 +263,7 @@ void GltfMaterials::SetTextures(const tinygltf::Material& from, const Surface& s
         MetallicRoughness{*std::move(gloss), surface.metallic, surface.roughness, surface.specular};
   }
   if (auto through = textures_.Read(uses.transmission, Transfer::kLinear)) {
-    const double metallic = material->metallic_roughness ? 0 : surface.metallic;
-    material->transmission =
-        Transmission{*std::move(through), surface.transmission * (1 - metallic)};
+    material->transmission = Transmission{*std::move(through), surface.transmission};
   }
   if (auto occlusion = textures_.Read(uses.occlusion, Transfer::kLinear)) {
     material->occlusion = Occlusion{*std::move(occlusion), Share(from.occlusionTexture.strength)};

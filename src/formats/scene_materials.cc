@@ -163,16 +163,27 @@ void ReadMap(const JsonCursor& value, ColourSource* source, std::optional<Map>* 
   *out = std::move(map);
 }
 
+// The only one that may do without a texture.
+void ReadGloss(const JsonCursor& value, ColourSource* source,
+               std::optional<MetallicRoughness>* out) {
+  if (!value.present()) return;
+  MetallicRoughness gloss;
+  JsonObject object(value);
+  if (const JsonCursor texture = object.Optional("texture"); texture.present()) {
+    gloss.texture = ReadTexture(texture, source, Transfer::kLinear).value_or(Texture());
+  }
+  object.Optional("metallic").Read(kUnit, &gloss.metallic);
+  object.Optional("roughness").Read(kUnit, &gloss.roughness);
+  object.Optional("specular").Read(kStrength, &gloss.specular);
+  object.Finish();
+  *out = std::move(gloss);
+}
+
 void ReadMaps(JsonObject& object, ColourSource* source, Material* material) {
   if (const JsonCursor emission = object.Optional("emission_texture"); emission.present()) {
     material->emission_texture = ReadTexture(emission, source);
   }
-  ReadMap(object.Optional("metallic_roughness"), source, &material->metallic_roughness,
-          [](JsonObject& rest, MetallicRoughness& map) {
-            rest.Optional("metallic").Read(kUnit, &map.metallic);
-            rest.Optional("roughness").Read(kUnit, &map.roughness);
-            rest.Optional("specular").Read(kStrength, &map.specular);
-          });
+  ReadGloss(object.Optional("metallic_roughness"), source, &material->metallic_roughness);
   ReadMap(
       object.Optional("transmission"), source, &material->transmission,
       [](JsonObject& rest, Transmission& map) { rest.Optional("share").Read(kUnit, &map.share); });
@@ -212,10 +223,11 @@ void WriteMaps(const Material& material, Json* json) {
     (*json)["emission_texture"] = TextureJson(*material.emission_texture);
   }
   if (const auto& map = material.metallic_roughness) {
-    (*json)["metallic_roughness"] = {{"texture", TextureJson(map->texture)},
-                                     {"metallic", map->metallic},
-                                     {"roughness", map->roughness},
-                                     {"specular", map->specular}};
+    Json& gloss = (*json)["metallic_roughness"];
+    if (map->texture.image) gloss["texture"] = TextureJson(map->texture);
+    gloss["metallic"] = map->metallic;
+    gloss["roughness"] = map->roughness;
+    gloss["specular"] = map->specular;
   }
   if (const auto& map = material.transmission) {
     (*json)["transmission"] = {{"texture", TextureJson(map->texture)}, {"share", map->share}};

@@ -19,6 +19,7 @@
 #include "src/lab/has_program.h"
 #include "src/scene/direction.h"
 #include "src/scene/placed_groups.h"
+#include "src/scene/resolve_gloss.h"
 
 namespace sheaf {
 namespace {
@@ -77,7 +78,8 @@ std::string Pigment(const Material& material, const Quad* quad) {
   return fmt::format("pigment {{ rgb {} transmit {} }}", Vector(colour), transmit);
 }
 
-std::string TextureText(const Scene& scene, const Material& material, const Quad* quad) {
+std::string TextureText(const Scene& scene, const Material& given, const Quad* quad) {
+  const Material material = ResolveGloss(given, GlossModel::kFading);
   return fmt::format("texture {{ {} {} }}", Pigment(material, quad), Finish(scene, material));
 }
 

@@ -16,13 +16,15 @@ namespace sheaf {
 template <typename Real>
 class GlossTables {
  public:
-  // 2 * kGlossEntries numbers for a material whose slope width is above 0: one over the share that
-  // leaves when all is reflected and transmitted, so that throughputs times it lose nothing. Of a
-  // material that transmits, the table is that of its interface.
+  // 2 * kGlossEntries numbers for a material that has facets: one over the share that leaves when
+  // all is reflected and transmitted, so that throughputs times it lose nothing. kGlossRows times
+  // as many where the width of their slopes varies. Of a material that transmits, the table is that
+  // of its interface.
   const Real* TableOf(const MaterialData<Real>& material);
 
  private:
-  using Key = std::tuple<double, double, bool>;  // slope width, index, whether it transmits
+  // Slope width, below 0 for all of them; index; whether it transmits.
+  using Key = std::tuple<double, double, bool>;
   std::map<Key, std::unique_ptr<std::vector<Real>>> tables_;
 };
 

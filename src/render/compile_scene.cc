@@ -19,6 +19,7 @@
 #include "src/scalar/sin_cos.h"
 #include "src/scene/decode_table.h"
 #include "src/scene/projection.h"
+#include "src/scene/resolve_gloss.h"
 #include "src/scene/shapes.h"
 
 namespace sheaf {
@@ -140,7 +141,8 @@ void CompileFinish(const Material& material, CompiledScene<Real>& compiled,
     for (int i = 0; i < 3; ++i) data.emission[i] *= static_cast<Real>(texture->factor[i]);
   }
   if (const auto& gloss = material.metallic_roughness) {
-    finish.metallic_roughness = CompileTexture(gloss->texture, compiled);
+    finish.is_glossy = true;
+    if (gloss->texture.image) finish.metallic_roughness = CompileTexture(gloss->texture, compiled);
     finish.metallic = static_cast<Real>(gloss->metallic);
     finish.roughness = static_cast<Real>(gloss->roughness);
     finish.specular = static_cast<Real>(gloss->specular);
@@ -249,7 +251,7 @@ void AddTextureNeeds(CompiledScene<Real>& compiled) {
 template <typename Real>
 void FollowOneRay(MaterialData<Real>& data) {
   for (Real& light : data.ambient) light = 0;
-  const bool is_diffuse = data.kd > 0 || data.finish.metallic_roughness != kNoTexture;
+  const bool is_diffuse = data.kd > 0 || data.finish.is_glossy;
   if (is_diffuse) data.needs |= kNeedsChildren;
   if (data.needs & kNeedsChildren) data.needs |= kNeedsChoice;
 }
@@ -288,17 +290,20 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   CompiledScene<Real> compiled;
   const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
   const Colour ambient = AmbientLightOf(scene.settings);
-  for (const Material& material : scene.materials) {
+  const bool draws_facets = integrator != Integrator::kWhitted;
+  const GlossModel gloss = draws_facets ? GlossModel::kFacets : GlossModel::kFading;
+  for (const Material& given : scene.materials) {
+    const Material material = ResolveGloss(given, gloss);
     MaterialData<Real> data = CompileMaterial<Real>(material, ambient, placement);
     if (const auto* texture = std::get_if<Texture>(&material.base_colour)) {
       data.texture = CompileTexture(*texture, compiled);
     }
     CompileFinish(material, compiled, data);
     if (scene.settings.shadows == Shadows::kThrough) Store(material.transmit, data.passes);
-    const bool has_facets = AnyPositive(data.reflect) || AnyPositive(data.transmit) ||
-                            data.finish.metallic_roughness != kNoTexture;
-    if (integrator == Integrator::kWhitted || !has_facets) data.slope_width = 0;
-    if (data.slope_width > 0) data.gloss = compiled.gloss.TableOf(data);
+    data.finish.has_facets = data.finish.is_glossy && draws_facets;
+    const bool sends_rays = AnyPositive(data.reflect) || AnyPositive(data.transmit);
+    if (data.finish.is_glossy || !draws_facets || !sends_rays) data.slope_width = 0;
+    if (HasFacets(data)) data.gloss = compiled.gloss.TableOf(data);
     data.needs = NeedsOf(data);
     if (integrator == Integrator::kPath) FollowOneRay(data);
     compiled.materials.push_back(data);

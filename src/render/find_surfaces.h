@@ -26,7 +26,7 @@ constexpr std::uint64_t SurfaceFieldsFor(std::uint32_t needs) {
       bits(&Fields::ambient_r, &Fields::ambient_g, &Fields::ambient_b, &Fields::emission_r,
            &Fields::emission_g, &Fields::emission_b, &Fields::kd, &Fields::ks, &Fields::shininess,
            &Fields::reflect_r, &Fields::reflect_g, &Fields::reflect_b, &Fields::transmit_r,
-           &Fields::transmit_g, &Fields::transmit_b);
+           &Fields::transmit_g, &Fields::transmit_b, &Fields::slope_width);
   const std::uint64_t widths = FieldBit(&Fields::width);
   const std::uint64_t footprints = bits(&Fields::footprint_u, &Fields::footprint_v);
   const std::uint64_t facets =

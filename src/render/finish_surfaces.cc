@@ -49,6 +49,10 @@ void SampleTextures(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
     if (texture == kNoTexture) return;
     kernels.sample_texture(frame.textures[texture], surfaces, bin.batch.count, channels);
   };
+  if (finish.metallic_roughness == kNoTexture) {
+    std::fill_n(texels.roughness, bin.batch.count, Real(1));
+    std::fill_n(texels.metallic, bin.batch.count, Real(1));
+  }
   sample(finish.metallic_roughness, {nullptr, texels.roughness, texels.metallic, nullptr});
   sample(finish.occlusion, {texels.occlusion, nullptr, nullptr, nullptr});
   sample(finish.transmission, {texels.transmission, nullptr, nullptr, nullptr});
@@ -93,6 +97,7 @@ void FinishSurfaces(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
     finished.kd[i] = point.kd;
     finished.ks[i] = point.ks;
     finished.shininess[i] = point.shininess;
+    finished.slope_width[i] = point.slope_width;
   }
 }
 

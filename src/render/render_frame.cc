@@ -41,7 +41,7 @@ bool IsDistributed(const FrameView<Real>& frame) {
          std::any_of(frame.lights.begin(), frame.lights.end(),
                      [](const auto& light) { return light.shape != LightShape::kPoint; }) ||
          std::any_of(frame.materials.begin(), frame.materials.end(),
-                     [](const auto& material) { return material.slope_width > 0; });
+                     [](const auto& material) { return HasFacets(material); });
 }
 
 template <typename Real>

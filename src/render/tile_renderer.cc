@@ -37,7 +37,7 @@ std::uint32_t NeedsOfAny(const FrameView<Real>& frame) {
 template <typename Real>
 bool ReflectsOrTransmits(const MaterialData<Real>& material) {
   return AnyPositive(material.reflect) || (material.needs & kNeedsTransmission) != 0 ||
-         material.finish.metallic_roughness != kNoTexture;
+         material.finish.is_glossy;
 }
 
 }  // namespace

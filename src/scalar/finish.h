@@ -64,9 +64,11 @@ Vec3<Real> PassedAt(const MaterialData<Real>& material, std::span<const TextureD
                     const Surface<Real>& surface) {
   const FinishData<Real>& finish = material.finish;
   Vec3<Real> passes = FromArray(material.passes);
-  if (finish.metallic_roughness != kNoTexture) {  // metal lets nothing pass
-    const Vec3<Real> gloss = SampleTexture(textures[finish.metallic_roughness], surface);
-    passes = passes * (1 - finish.metallic * gloss.z);
+  if (finish.is_glossy) {  // metal lets nothing pass
+    const Real texel = finish.metallic_roughness == kNoTexture
+                           ? Real(1)
+                           : SampleTexture(textures[finish.metallic_roughness], surface).z;
+    passes = passes * (1 - finish.metallic * texel);
   }
   if (finish.transmission != kNoTexture) {
     passes = passes * SampleTexture(textures[finish.transmission], surface).x;
@@ -84,13 +86,15 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<R
                               Vec3<Real> base) {
   const FinishData<Real>& finish = material.finish;
   MaterialData<Real> point = material;
-  if (finish.metallic_roughness != kNoTexture) {
+  if (finish.is_glossy) {
     const Real metallic = finish.metallic * texels.metallic;
-    const Gloss<Real> gloss =
-        GlossOf(metallic, finish.roughness * texels.roughness, finish.specular);
+    const Real roughness = finish.roughness * texels.roughness;
+    const Gloss<Real> gloss = finish.has_facets ? FacetGlossOf(metallic, roughness, finish.specular)
+                                                : GlossOf(metallic, roughness, finish.specular);
     point.kd = point.kd * gloss.kd;
     point.ks = gloss.ks;
     point.shininess = gloss.shininess;
+    point.slope_width = gloss.slope_width;
     for (int i = 0; i < 3; ++i) {
       point.ambient[i] = point.ambient[i] * gloss.ambient;
       point.reflect[i] = std::min(base[i], Real(1)) * gloss.mirror;
@@ -100,8 +104,7 @@ MaterialData<Real> MaterialAt(const MaterialData<Real>& material, const Texels<R
   if (finish.transmission != kNoTexture) {
     const Real through = texels.transmission;
     // Metal lets nothing through.
-    const Real metal =
-        finish.metallic_roughness == kNoTexture ? Real(0) : finish.metallic * texels.metallic;
+    const Real metal = finish.is_glossy ? finish.metallic * texels.metallic : Real(0);
     const Real kept = 1 - (finish.transmission_share * through) * (1 - metal);
     point.kd = point.kd * kept;
     for (int i = 0; i < 3; ++i) {

@@ -10,6 +10,7 @@
 #define SHEAF_SCALAR_MICROFACET_H_
 
 #include <cmath>
+#include <cstddef>
 
 #include "simd/shading.h"
 #include "src/scalar/draw_sample.h"
@@ -47,15 +48,21 @@ Vec3<Real> DrawFacet(Real width, const Surface<Real>& surface, SamplePoint<Real>
 }
 
 // What throughputs are multiplied with besides: the table between the cosines around that of the
-// arriving ray.
+// arriving ray, and between the widths around the material's where these vary.
 template <typename Real>
 Real GlossAt(const MaterialData<Real>& material, const Surface<Real>& surface) {
-  const Real* const table = material.gloss + (surface.inside() ? kGlossEntries : 0);
+  const Real* table = material.gloss + (surface.inside() ? kGlossEntries : 0);
   const Real height = Dot(surface.normal, -surface.direction);
   const Real clamped = height > 0 ? (height < 1 ? height : Real(1)) : Real(0);
   const Real along = std::sqrt(clamped) * kGlossSteps, step = std::floor(along);
   const int i = static_cast<int>(step);
-  return table[i] + (table[i + 1] - table[i]) * (along - step);
+  const auto between = [&] { return table[i] + (table[i + 1] - table[i]) * (along - step); };
+  if (!material.finish.has_facets) return between();
+  const Real across = std::sqrt(material.slope_width) * kGlossRowSteps, row = std::floor(across);
+  table += static_cast<std::ptrdiff_t>(row) * (2 * kGlossEntries);
+  const Real low = between();
+  table += 2 * kGlossEntries;
+  return low + (between() - low) * (across - row);
 }
 
 }  // namespace sheaf::scalar

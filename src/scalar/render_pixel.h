@@ -149,9 +149,9 @@ Lobes<Real> ChooseRays(const FrameView<Real>& frame, const Path<Real>& path, Sam
   const auto draw = [&](std::uint32_t dimension) {
     return DrawSample<Real>(key.seed, key.index, dimension);
   };
-  if (material.slope_width > 0) {
-    surface.facet = DrawFacet(material.slope_width, surface, draw(kGlossDimension));
-    surface.gloss = GlossAt(material, surface);
+  if (HasFacets(material)) {
+    surface.facet = DrawFacet(here.slope_width, surface, draw(kGlossDimension));
+    surface.gloss = GlossAt(here, surface);
   }
   if (!frame.follows_paths) return {};
   const Roulette roulette = depth >= kRouletteDepth ? Roulette::kOn : Roulette::kOff;

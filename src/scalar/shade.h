@@ -23,7 +23,7 @@ bool HasLocalLight(const MaterialData<Real>& material, const Surface<Real>& surf
 
 template <typename Real>
 bool ReactsToLight(const MaterialData<Real>& material) {
-  return material.kd > 0 || material.ks > 0 || material.finish.metallic_roughness != kNoTexture;
+  return material.kd > 0 || material.ks > 0 || material.finish.is_glossy;
 }
 
 // A checker is odd where floor(u * cells) + floor(v * cells) is. Halving and doubling are exact.

@@ -81,7 +81,7 @@ Vec3<Real> KeepOnSide(const Surface<Real>& surface, Vec3<Real> direction, Real s
 // The normal that rays are mirrored and bent at.
 template <typename Real>
 Vec3<Real> MirrorNormal(const MaterialData<Real>& material, const Surface<Real>& surface) {
-  return material.slope_width > 0 ? surface.facet : surface.normal;
+  return HasFacets(material) ? surface.facet : surface.normal;
 }
 
 template <typename Real>
@@ -116,7 +116,7 @@ Real GlossShare(const MaterialData<Real>& material, const Surface<Real>& surface
 template <typename Real>
 Spawned<Real> Spawn(const MaterialData<Real>& material, const Surface<Real>& surface,
                     const Real (&throughput)[3]) {
-  const bool is_rough = material.slope_width > 0;
+  const bool is_rough = HasFacets(material);
   const Vec3<Real> n = MirrorNormal(material, surface), d = surface.direction;
   const Real cos_i = ArrivalCosine(n, d), eta = IndexRatio(material, surface);
   const Split<Real> split = SplitAt(material, surface);

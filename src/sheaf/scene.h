@@ -80,11 +80,12 @@ struct Texture {
 };
 
 // How metallic and how rough a surface is, point by point: the texture's blue times `metallic` and
-// its green times `roughness` (glTF 2.0, 3.9.2). Turned into Whitted's terms at each point, as
-// docs/formats.md has it; the material's `kd` and `transmit` are then those of what is no metal,
-// and its `ks`, `shininess` and `reflect` count for nothing.
+// its green times `roughness` (glTF 2.0, 3.9.2); without an image these alone. Turned into the
+// other terms at each point, by the integrator, as docs/formats.md has it; the material's `kd` and
+// `transmit` are then those of what is no metal, and its `ks`, `shininess`, `reflect` and
+// `roughness` count for nothing.
 struct MetallicRoughness {
-  Texture texture;                         // its factor counts for nothing
+  Texture texture = {};                    // its factor counts for nothing; image may be null
   double metallic = 1.0, roughness = 1.0;  // [0, 1]
   double specular = 1.0;  // >= 0: the highlight of what is no metal, over that of an index of 1.5
 };
