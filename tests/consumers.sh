@@ -35,8 +35,8 @@ install_and_move() { # BUILD KIND
   headers=$(find "$prefix/include/sheaf" -maxdepth 1 -name '*.h' | wc -l)
   others=$(find "$prefix" \( -name '*.h' -o -name '*.hpp' -o -path '*/include/*' \) -type f | wc -l)
   # A dozen of C++, and that of C in its parts.
-  [[ $headers -gt 0 && $headers -le 14 && $headers -eq $others ]] ||
-    fail "$headers headers in include/sheaf (at most 14), $others in all"
+  [[ $headers -gt 0 && $headers -le 16 && $headers -eq $others ]] ||
+    fail "$headers headers in include/sheaf (at most 16), $others in all"
   mv "$prefix" "$moved"
 }
 one_target=-DHWY_DISABLED_TARGETS=HWY_AVX3_DL+HWY_AVX3+HWY_AVX2+HWY_SSE4

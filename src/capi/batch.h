@@ -7,24 +7,29 @@
 #include "sheaf/capi.h"
 #include "sheaf/error.h"
 #include "sheaf/geometry.h"
+#include "src/capi/handles.h"
 
 namespace sheaf::capi {
 
-struct Batch {
-  RayArrays rays;
+template <typename Real>
+struct BatchOf {
+  RayArraysOf<Real> rays;
   std::size_t count = 0;
-  TraceOptions options;
+  TraceOptionsOf<Real> options;
 };
+using Batch = BatchOf<float>;
 
 // These fail with a message that names the structure that is missing or does not fit.
 
-Result<Batch> TakeRays(const sheaf_geometry* geometry, const sheaf_rays* given);
+Result<BatchOf<float>> TakeRays(const sheaf_rays* given);
+Result<BatchOf<double>> TakeRays(const sheaf_rays_d* given);
 
-// `given` may be null.
-Result<Batch> TakeBatch(const sheaf_geometry* geometry, const sheaf_rays* rays,
-                        const sheaf_trace_options* given);
+// `options` may be null.
+Result<BatchOf<float>> TakeBatch(const sheaf_rays* rays, const sheaf_trace_options* options);
+Result<BatchOf<double>> TakeBatch(const sheaf_rays_d* rays, const sheaf_trace_options_d* options);
 
 Result<HitArrays> TakeHits(const sheaf_hits* given);
+Result<HitArraysD> TakeHits(const sheaf_hits_d* given);
 
 }  // namespace sheaf::capi
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "sheaf/film.h"
 #include "sheaf/formats.h"
 #include "sheaf/geometry.h"
+#include "sheaf/instances.h"
 #include "sheaf/render.h"
 #include "sheaf/target.h"
 
@@ -25,11 +27,24 @@
 struct sheaf_geometry_input {
   sheaf::GeometryInput input;
   // Copies of arrays whose elements lay apart. A deque moves none of them.
-  std::deque<std::vector<float>> numbers = {};
+  std::deque<std::vector<float>> floats = {};
+  std::deque<std::vector<double>> doubles = {};
   std::deque<std::vector<std::uint32_t>> indices = {};
 };
 struct sheaf_geometry {
-  sheaf::Geometry geometry;
+  explicit sheaf_geometry(sheaf::Geometry built)
+      : shared(std::make_shared<sheaf::Geometry>(std::move(built))), geometry(*shared) {}
+  const std::shared_ptr<sheaf::Geometry> shared;  // with the instances that it stands in
+  sheaf::Geometry& geometry;
+};
+struct sheaf_geometry_d {
+  explicit sheaf_geometry_d(sheaf::GeometryD built)
+      : shared(std::make_shared<sheaf::GeometryD>(std::move(built))), geometry(*shared) {}
+  const std::shared_ptr<sheaf::GeometryD> shared;
+  sheaf::GeometryD& geometry;
+};
+struct sheaf_instances {
+  sheaf::Instances instances;
 };
 struct sheaf_scene {
   explicit sheaf_scene(sheaf::ReadSceneResult result)
@@ -80,6 +95,10 @@ sheaf_status Make(Handle** handle, const char* name, Call&& call) noexcept {
 }
 
 inline Error UsageError(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+
+inline Status NotNull(const void* given, const char* name) {
+  return given == nullptr ? Status(UsageError(std::string(name) + " is NULL")) : Status(Done{});
+}
 
 // What stands in an enumeration of C, where a caller may write any number. C++ may not read one
 // that it does not name.

@@ -28,7 +28,8 @@ Result<HitRules> TakeRules(const sheaf_hit_rules* given) {
 
 Result<RuledBatch> TakeRuled(const sheaf_geometry* geometry, const sheaf_rays* rays,
                              const sheaf_trace_options* options, const sheaf_hit_rules* given) {
-  const Result<Batch> batch = TakeBatch(geometry, rays, options);
+  if (const Status there = NotNull(geometry, "geometry"); !there) return there.error();
+  const Result<Batch> batch = TakeBatch(rays, options);
   if (!batch) return batch.error();
   const Result<HitRules> rules = TakeRules(given);
   if (!rules) return rules.error();
@@ -67,7 +68,7 @@ struct Points {
 
 Result<Points> TakePoints(const sheaf_geometry* geometry, const sheaf_points* given,
                           const char* name = "points") {
-  if (geometry == nullptr) return UsageError("geometry is NULL");
+  if (const Status there = NotNull(geometry, "geometry"); !there) return there.error();
   sheaf_points own = SHEAF_POINTS_INIT;
   if (const Status taken = Take(given, name, &own); !taken) return taken.error();
   return Points{{own.x, own.y, own.z, own.stride}, own.count};

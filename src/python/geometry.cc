@@ -176,6 +176,16 @@ py::dict Points(const GeometryOf<Real>& geometry, const Rays<Real>& rays, const 
 }
 
 template <typename Real>
+GeometryOf<Real> Map(const std::string& path, const std::string& check) {
+  Result<GeometryOf<Real>> mapped = [&] {
+    const py::gil_scoped_release release;
+    return GeometryOf<Real>::Map(path, check == "header" ? MapCheck::kHeader : MapCheck::kAll);
+  }();
+  if (!mapped) Check(mapped.error());
+  return std::move(mapped).value();
+}
+
+template <typename Real>
 void AddGeometryOf(py::module_& module, const std::string& number) {
   using Geometry = GeometryOf<Real>;
   py::class_<Rays<Real>>(module, ("Rays" + number).c_str())
@@ -185,6 +195,15 @@ void AddGeometryOf(py::module_& module, const std::string& number) {
   py::class_<Geometry> type(module, ("Geometry" + number).c_str());
   type.def(py::init(&Build<Real>))
       .def("update", &Update<Real>)
+      .def("save",
+           [](const Geometry& geometry, const std::string& path) {
+             const Status saved = [&] {
+               const py::gil_scoped_release release;
+               return geometry.Save(path);
+             }();
+             Check(saved);
+           })
+      .def_static("map", &Map<Real>)
       .def("statistics", &StatisticsOf<Real>)
       .def("bounds", [](const Geometry& g) { return py::make_tuple(g.lower(), g.upper()); })
       .def("first_primitives",

@@ -145,11 +145,29 @@ typedef struct sheaf_update_options {
 // Makes of a geometry what sheaf_geometry_build makes of the input, which is faster where
 // primitives have moved and are otherwise as before: the tree is fitted to them, and *rebuilt is 0.
 // It is 1 where the tree was built anew. `options` and `rebuilt` may be NULL. Nobody else may use
-// the geometry meanwhile. Fails as sheaf_geometry_build does; the geometry is then as it was. After
-// SHEAF_OUT_OF_MEMORY it has to be updated again before it is used.
+// the geometry meanwhile. Fails as sheaf_geometry_build does, or with SHEAF_USAGE where the
+// geometry stands in instances; it is then as it was. After SHEAF_OUT_OF_MEMORY it has to be
+// updated again before it is used.
 SHEAF_API sheaf_status sheaf_geometry_update(sheaf_geometry* geometry,
                                              const sheaf_geometry_input* input,
                                              const sheaf_update_options* options, int32_t* rebuilt);
+
+// Writes the geometry with its tree to a file: the old file or the whole new one is there, whatever
+// happens. `path` is UTF-8. Fails with SHEAF_INPUT_OUTPUT. Such a file belongs to the version of
+// Sheaf and the kind of machine that wrote it.
+SHEAF_API sheaf_status sheaf_geometry_save(const sheaf_geometry* geometry, const char* path);
+
+typedef enum sheaf_map_check {
+  SHEAF_MAP_CHECK_ALL = 0,    // reads all of the file: checksums, indices, boxes
+  SHEAF_MAP_CHECK_HEADER = 1  // header and sizes alone, for a file that is known to be sound
+} sheaf_map_check;
+
+// The geometry of a file that sheaf_geometry_save wrote: the same hits to the bit. The file is
+// mapped read-only and its pages are shared with all that map it; it must not be written to
+// meanwhile, but may be saved to again, renamed or removed. Fails with SHEAF_INPUT_OUTPUT, the path
+// and what is wrong where the file cannot be read or is damaged.
+SHEAF_API sheaf_status sheaf_geometry_map(const char* path, sheaf_map_check check,
+                                          sheaf_geometry** geometry);
 
 typedef struct sheaf_geometry_statistics {
   size_t size;
@@ -426,6 +444,8 @@ SHEAF_API sheaf_status sheaf_film_write(const sheaf_film* film, const char* path
 #endif
 // NOLINTEND
 
-#include "sheaf/capi_queries.h"  // IWYU pragma: export
+#include "sheaf/capi_double.h"     // IWYU pragma: export
+#include "sheaf/capi_instances.h"  // IWYU pragma: export
+#include "sheaf/capi_queries.h"    // IWYU pragma: export
 
 #endif  // SHEAF_SHEAF_CAPI_H_

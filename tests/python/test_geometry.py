@@ -274,3 +274,26 @@ def test_an_update_has_the_hits_of_a_new_geometry(dtype):
     assert geometry.update(moved, faces, rebuild_ratio=0) is True
     with pytest.raises(sheaf.UsageError, match="vertex 300 of 300"):
         geometry.update(moved, [[0, 1, 300]])
+
+
+@pytest.mark.parametrize("dtype", [numpy.float32, numpy.float64])
+def test_a_saved_geometry_has_the_same_hits(dtype, tmp_path):
+    geometry = sheaf.Geometry(VERTICES, FACES, dtype=dtype)
+    path = tmp_path / "soup.sheaf"
+    geometry.save(path)
+    rays = ORIGINS.astype(dtype), DIRECTIONS.astype(dtype)
+    for check in ("all", "header"):
+        mapped = sheaf.Geometry.map(path, dtype=dtype, check=check)
+        assert mapped.dtype == dtype
+        assert (mapped.closest(*rays).t == geometry.closest(*rays).t).all()
+        assert (mapped.inside(ORIGINS[:50]) == geometry.inside(ORIGINS[:50])).all()
+    other = numpy.float64 if dtype == numpy.float32 else numpy.float32
+    with pytest.raises(sheaf.FileError, match="soup.sheaf"):
+        sheaf.Geometry.map(path, dtype=other)
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(sheaf.FileError, match="soup.sheaf"):
+        sheaf.Geometry.map(str(path), dtype=dtype)
+    with pytest.raises(sheaf.FileError, match="nowhere"):
+        geometry.save(tmp_path / "nowhere" / "soup.sheaf")
+    with pytest.raises(sheaf.UsageError, match='"some"'):
+        sheaf.Geometry.map(path, check="some")

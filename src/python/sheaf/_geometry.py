@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Tuple
+import os
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -12,6 +13,14 @@ from ._arrays import Filter, filter_of, indices_of, table_of, vectors_of
 from ._hits import Hits
 from ._queries import Queries
 from ._sheaf import UsageError
+
+
+def _kind_of(dtype: DTypeLike) -> Tuple[numpy.dtype[Any], Any]:
+    kinds: Dict[str, Any] = {"float32": _sheaf.GeometryFloat, "float64": _sheaf.GeometryDouble}
+    named = numpy.dtype(dtype)
+    if named.name not in kinds:
+        raise UsageError(f"dtype: {named}, not float32 or float64")
+    return named, kinds[named.name]
 
 
 class Geometry(Queries):
@@ -42,12 +51,36 @@ class Geometry(Queries):
         threads: int = 0,
         not_finite: str = "refuse",
     ):
-        self._dtype = numpy.dtype(dtype)
-        kinds: Dict[str, Any] = {"float32": _sheaf.GeometryFloat, "float64": _sheaf.GeometryDouble}
-        if self._dtype.name not in kinds:
-            raise UsageError(f"dtype: {self._dtype}, not float32 or float64")
+        self._dtype, kind = _kind_of(dtype)
         objects = self._objects(vertices, faces, normals, spheres, disks, threads, not_finite)
-        self._core = kinds[self._dtype.name](objects, threads, not_finite)
+        self._core = kind(objects, threads, not_finite)
+
+    @classmethod
+    def map(
+        cls, path: Union[str, "os.PathLike[str]"], *, dtype: DTypeLike = numpy.float32, check: str = "all"
+    ) -> "Geometry":
+        """The geometry of a file that `save` wrote: the same hits, to the bit.
+
+        The file is mapped read-only and its pages are shared with every process that maps it. It must
+        not be written to meanwhile, but may be saved to again, renamed or removed.
+
+        dtype: that of the geometry that was saved. check: "all" reads the whole file once and believes
+        nothing of it, "header" looks at the header and the sizes alone, for files that are known to be
+        sound. Raises FileError, with the path and what is wrong, where the file cannot be read,
+        is damaged, of another version or of another dtype.
+        """
+        if check not in ("all", "header"):
+            raise UsageError(f'check: "{check}", not "all" or "header"')
+        self = cls.__new__(cls)
+        self._dtype, kind = _kind_of(dtype)
+        self._core = kind.map(os.fspath(path), check)
+        return self
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes the geometry with its tree to a file, for `map`. The old file or the whole new one is
+        there, whatever happens. Such a file belongs to the version of Sheaf and the kind of machine.
+        Raises FileError where it cannot be written."""
+        self._core.save(os.fspath(path))
 
     def update(
         self,
