@@ -40,7 +40,7 @@ inline constexpr std::uint32_t kNeedsSecondSet = 16384;  // of coordinates; text
 // width kGlossRows of these follow one another, for square roots of widths from 0 to 1.
 inline constexpr int kGlossSteps = 64;
 inline constexpr int kGlossEntries = kGlossSteps + 2;  // the last twice, to be read beside 1
-inline constexpr int kGlossRowSteps = 16;
+inline constexpr int kGlossRowSteps = 32;
 inline constexpr int kGlossRows = kGlossRowSteps + 2;  // likewise
 
 inline constexpr std::uint32_t kNoTexture = ~std::uint32_t{0};

@@ -14,7 +14,7 @@ namespace {
 
 // Points a cosine: no light is lost or won by more than a thousandth, or by more than three where
 // slopes vary in width, whose tables are long (tests/microfacet_test.cc).
-constexpr std::uint32_t kPoints = 8192, kPointsOfRows = 1024;
+constexpr std::uint32_t kPoints = 8192, kPointsOfRows = 2048;
 constexpr double kAnyWidth = -1;
 constexpr std::size_t kMostKept = 4096;  // tables
 

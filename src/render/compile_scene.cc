@@ -291,7 +291,8 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
   const PointBounds bounds = CompileGeometry(scene, placement, compiled.objects);
   const Colour ambient = AmbientLightOf(scene.settings);
   const bool draws_facets = integrator != Integrator::kWhitted;
-  const GlossModel gloss = draws_facets ? GlossModel::kFacets : GlossModel::kFading;
+  const GlossModel gloss =
+      integrator == Integrator::kPath ? GlossModel::kFacets : GlossModel::kFading;
   for (const Material& given : scene.materials) {
     const Material material = ResolveGloss(given, gloss);
     MaterialData<Real> data = CompileMaterial<Real>(material, ambient, placement);
@@ -300,7 +301,7 @@ CompiledScene<Real> CompileScene(const Scene& scene, const ScenePlacement& place
     }
     CompileFinish(material, compiled, data);
     if (scene.settings.shadows == Shadows::kThrough) Store(material.transmit, data.passes);
-    data.finish.has_facets = data.finish.is_glossy && draws_facets;
+    data.finish.has_facets = data.finish.is_glossy && gloss == GlossModel::kFacets;
     const bool sends_rays = AnyPositive(data.reflect) || AnyPositive(data.transmit);
     if (data.finish.is_glossy || !draws_facets || !sends_rays) data.slope_width = 0;
     if (HasFacets(data)) data.gloss = compiled.gloss.TableOf(data);

@@ -8,8 +8,8 @@ namespace sheaf {
 
 // How rough mirrors are shown: docs/formats.md, "glTF".
 enum class GlossModel {
-  kFading,  // sharply, the less the rougher: GlossOf
-  kFacets,  // by facets that are drawn: FacetGlossOf
+  kFading,  // sharply, the less the rougher: GlossOf, of whitted and distributed
+  kFacets,  // by facets that are drawn: FacetGlossOf, of path
 };
 
 // The same material without `metallic_roughness`, where neither that nor the colour of a metal

@@ -81,7 +81,7 @@ struct Texture {
 
 // How metallic and how rough a surface is, point by point: the texture's blue times `metallic` and
 // its green times `roughness` (glTF 2.0, 3.9.2); without an image these alone. Turned into the
-// other terms at each point, by the integrator, as docs/formats.md has it; the material's `kd` and
+// other terms at each point, as docs/formats.md has it for each integrator; the material's `kd` and
 // `transmit` are then those of what is no metal, and its `ks`, `shininess`, `reflect` and
 // `roughness` count for nothing.
 struct MetallicRoughness {
