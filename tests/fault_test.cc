@@ -249,6 +249,42 @@ TEST_CASE("a kill before any call leaves a name that the next run removes, where
   trial.Print("kills before calls");
 }
 
+TEST_CASE(
+    "a sequence that is killed before any call goes on to the end, and nothing else is left") {
+  const Trial scene(".png");
+  const std::vector<std::string> command = {"render",      scene.work() / "scene.json",
+                                            "--turntable", "2",
+                                            "--threads",   "1",
+                                            "-q",          "-o",
+                                            "{frame}.png", "--resume"};
+  const auto run = [&](const Workspace& work) {
+    std::vector<std::string> there = command;
+    there[8] = work / command[8];
+    return work.Run(there).code;
+  };
+  const Workspace whole;
+  {
+    const Fault fault({{"SHEAF_FAULT", "file"}, {"SHEAF_FAULT_COUNT", scene.work() / "count"}});
+    REQUIRE(run(whole) == 0);
+  }
+  const long count = std::stol(ReadText(scene.work() / "count"));
+  for (long n = 1; n <= count; ++n) {
+    CAPTURE(n);
+    const Workspace work;
+    {
+      const Fault fault({{"SHEAF_FAULT", "file"},
+                         {"SHEAF_FAULT_AT", std::to_string(n)},
+                         {"SHEAF_FAULT_KILLS", "1"}});
+      REQUIRE(run(work) == -SIGKILL);
+    }
+    CHECK(run(work) == 0);
+    CHECK(work.Files() == whole.Files());
+    for (const std::string& file : whole.Files()) {
+      CHECK(ReadText(work / file) == ReadText(whole / file));
+    }
+  }
+}
+
 TEST_CASE("signals at random moments") {
   const struct {
     int number;
