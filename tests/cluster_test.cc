@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "random_scene.h"
@@ -17,9 +19,11 @@
 #include "sheaf/target.h"
 #include "src/cluster/area_plan.h"
 #include "src/cluster/follower.h"
+#include "src/cluster/lead_frame.h"
 #include "src/cluster/leader.h"
 #include "src/cluster/share_files.h"
 #include "src/cluster/strips.h"
+#include "src/cluster/wire.h"
 #include "src/render/check_options.h"
 
 namespace sheaf {
@@ -103,6 +107,34 @@ TEST_CASE("areas cover every pixel once, in tiles, large ones first") {
   CHECK(small.Next(3)->width() == 12 * 32);
 }
 
+TEST_CASE("areas that are left out are not handed out, and all others are") {
+  Random random(4);
+  const PixelRect picture{7, 3, 407, 250};
+  for (int round = 0; round < 20; ++round) {
+    std::vector<int> times(400 * 247, 0);
+    const auto count = [&](const PixelRect& area) {
+      for (int y = area.y0; y < area.y1; ++y) {
+        for (int x = area.x0; x < area.x1; ++x) {
+          ++times[static_cast<std::size_t>(400 * (y - 3) + x - 7)];
+        }
+      }
+    };
+    // As a run of other ranks has left them.
+    AreaPlan before(picture, 16, 9, 1 << 20);
+    AreaPlan plan(picture, 16, 2, 1 << 20);
+    while (const auto area = before.Next(1)) {
+      if (random() % 3 == 0) continue;
+      plan.LeaveOut(*area);
+      count(*area);
+    }
+    while (const auto area = plan.Next(2)) {
+      REQUIRE((area->width() == 400 || area->height() <= 16));
+      count(*area);
+    }
+    CHECK(std::count(times.begin(), times.end(), 1) == 400 * 247);
+  }
+}
+
 TEST_CASE("rows come from the top in whatever order areas come") {
   const PixelRect picture{10, 20, 110, 120};
   Film whole(100, 100, {});
@@ -157,23 +189,15 @@ TEST_CASE("work of any size reaches every rank, and a frame may overtake it") {
   CHECK(std::count(is_same.begin(), is_same.end(), true) == 5);
 }
 
-// Follows in threads, each rank on a target of its own, and renders as rank 0.
-struct Gathered {
-  Film film;
-  Status status = Done{};
-  RenderStats stats;
-  std::vector<RankRecord> records;
-  bool has_left = false;
-};
-Gathered RenderOnThreads(const Scene& scene, const RenderOptions& options, int count,
-                         const std::function<Result<FollowedFrame>(int, FollowedFrame)>& change,
-                         const RowSink* sink = nullptr) {
-  Mailboxes boxes(count);
-  std::vector<Target> targets = {Target::Scalar()};
-  for (const std::string& name : UsableTargets()) targets.push_back(*Target::Named(name));
+// Follows in threads, each rank on a target of its own.
+using ChangeFrame = std::function<Result<FollowedFrame>(int, FollowedFrame)>;
+std::vector<std::jthread> FollowOnThreads(const Scene& scene, const RenderOptions& options,
+                                          Mailboxes& boxes, const ChangeFrame& change) {
   std::vector<std::jthread> threads;
-  for (int rank = 1; rank < count; ++rank) {
-    threads.emplace_back([&, rank] {
+  for (int rank = 1; rank < boxes.count(); ++rank) {
+    threads.emplace_back([&, change, rank] {
+      std::vector<Target> targets = {Target::Scalar()};
+      for (const std::string& name : UsableTargets()) targets.push_back(*Target::Named(name));
       ThreadRanks ranks(boxes, rank);
       const OpenFrame open = [&](const FrameOrder& order) {
         FollowedFrame frame{&scene, &scene.cameras.front(), options};
@@ -184,8 +208,22 @@ Gathered RenderOnThreads(const Scene& scene, const RenderOptions& options, int c
       Follow(ranks, {}, open, kNeverStop);
     });
   }
+  return threads;
+}
+
+// What rank 0 has of a picture.
+struct Gathered {
+  Film film;
+  Status status = Done{};
+  RenderStats stats;
+  std::vector<RankRecord> records;
+  bool has_left = false;
+};
+
+// Renders as rank 0.
+Gathered Lead(const Scene& scene, const RenderOptions& options, ThreadRanks& ranks,
+              const RowSink* sink, KeptAreas* kept, RenderProgress* progress) {
   Gathered gathered;
-  ThreadRanks ranks(boxes, 0);
   {
     Leader leader(ranks);
     const PixelRect area = AreaOf(options);
@@ -201,15 +239,23 @@ Gathered RenderOnThreads(const Scene& scene, const RenderOptions& options, int c
       y += rows.height;
       return Status(Done{});
     };
-    RenderProgress progress;
     gathered.status =
         leader.RenderRows(scene, scene.cameras.front(), {0, false, 0, options.layers}, options,
-                          sink != nullptr ? *sink : keep, &gathered.stats, &progress);
+                          sink != nullptr ? *sink : keep, kept, &gathered.stats, progress);
     gathered.records = leader.records();
   }
-  for (std::jthread& thread : threads) thread.join();
   gathered.has_left = ranks.has_left();
   return gathered;
+}
+
+Gathered RenderOnThreads(const Scene& scene, const RenderOptions& options, int count,
+                         const ChangeFrame& change, const RowSink* sink = nullptr,
+                         KeptAreas* kept = nullptr) {
+  Mailboxes boxes(count);
+  const std::vector<std::jthread> threads = FollowOnThreads(scene, options, boxes, change);
+  ThreadRanks ranks(boxes, 0);
+  RenderProgress progress;
+  return Lead(scene, options, ranks, sink, kept, &progress);
 }
 
 Scene CrystalBall() {
@@ -293,6 +339,95 @@ TEST_CASE("an error of any rank, or of the sink, ends the picture once and for a
   REQUIRE(!unwritten.status.ok());
   CHECK(unwritten.status.error().message == "a.png: disk full");
   CHECK(unwritten.has_left);
+}
+
+// Areas in memory, of this run and of the one before.
+class HeldAreas : public KeptAreas {
+ public:
+  const std::vector<PixelRect>& earlier() const override { return earlier_; }
+  Result<Film> Read(std::size_t index) override {
+    const PixelRect& area = earlier_[index];
+    return films_.at({area.y0, area.x0});
+  }
+  Status Keep(const PixelRect& area, const Film& pixels) override {
+    films_[{area.y0, area.x0}] = pixels;
+    areas_[{area.y0, area.x0}] = area;
+    pixels_ += std::int64_t{area.width()} * area.height();
+    return Done{};
+  }
+  void BeginNextRun() {
+    for (const auto& [at, area] : areas_) earlier_.push_back(area);
+  }
+  std::int64_t pixels() const { return pixels_; }
+
+ private:
+  std::map<std::pair<int, int>, PixelRect> areas_;
+  std::map<std::pair<int, int>, Film> films_;
+  std::vector<PixelRect> earlier_;
+  std::int64_t pixels_ = 0;
+};
+
+// Rank 0 where rank 1 dies over its first areas. When all other pixels are kept, the run ends.
+class BereavedRank : public ThreadRanks {
+ public:
+  BereavedRank(Mailboxes& boxes, const HeldAreas& kept, std::int64_t pixels,
+               RenderProgress& progress)
+      : ThreadRanks(boxes, 0), kept_(kept), pixels_(pixels), progress_(progress) {}
+  void Send(int to, int kind, std::string bytes) override {
+    if (to == 1 && kind == kAreaMessage) {
+      const auto area = WireReader(bytes).Get<PixelRect>();
+      lost_pixels += std::int64_t{area.width()} * area.height();
+      ++lost_areas;
+    }
+    ThreadRanks::Send(to, kind, std::move(bytes));
+  }
+  bool Receive(RankMessage* message) override {
+    if (kept_.pixels() + lost_pixels == pixels_) progress_.stop = true;
+    return ThreadRanks::Receive(message) && !(message->from == 1 && message->kind == kRowsMessage);
+  }
+
+  std::int64_t lost_pixels = 0;
+  int lost_areas = 0;
+
+ private:
+  const HeldAreas& kept_;
+  const std::int64_t pixels_;
+  RenderProgress& progress_;
+};
+
+TEST_CASE("what all ranks but one had finished is not rendered again") {
+  const Scene scene = CrystalBall();
+  const RenderOptions options = SmallOptions();
+  const Result<Film> film = Render(scene, scene.cameras.front(), options);
+  REQUIRE(film.ok());
+  const std::int64_t pixels = std::int64_t{options.width} * options.height;
+  HeldAreas kept;
+  int lost_areas = 0;
+  // Again where rank 1 was too late for any area.
+  for (int round = 0; round < 100 && lost_areas < kAreasAtOnce; ++round) {
+    kept = HeldAreas();
+    Mailboxes boxes(3);
+    const std::vector<std::jthread> threads = FollowOnThreads(scene, options, boxes, kUnchanged);
+    RenderProgress progress;
+    BereavedRank ranks(boxes, kept, pixels, progress);
+    const Gathered killed = Lead(scene, options, ranks, nullptr, &kept, &progress);
+    REQUIRE(!killed.status.ok());
+    CHECK(killed.status.error().kind == ErrorKind::kInterrupted);
+    CHECK(kept.pixels() + ranks.lost_pixels == pixels);
+    lost_areas = ranks.lost_areas;
+  }
+  REQUIRE(lost_areas == kAreasAtOnce);
+  const std::int64_t lost = pixels - kept.pixels();
+  kept.BeginNextRun();
+  for (const int count : {1, 4}) {
+    CAPTURE(count);
+    HeldAreas next = kept;
+    const Gathered resumed = RenderOnThreads(scene, options, count, kUnchanged, nullptr, &next);
+    REQUIRE(resumed.status.ok());
+    CHECK(IsSame(resumed.film, film.value()));
+    CHECK(resumed.stats.rays.primary == static_cast<std::uint64_t>(options.samples * lost));
+    CHECK(next.pixels() == pixels);
+  }
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
  *   SHEAF_FAULT_AT=N                which, from 1; absent: none
  *   SHEAF_FAULT_LASTING=1           and all after it
  *   SHEAF_FAULT_CODE=ERRNO          of files; EIO if absent
+ *   SHEAF_FAULT_KILLS=1             kills the process in the place of the call
  *   SHEAF_FAULT_COUNT=FILE          written at the end: how many there were */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +25,7 @@ extern void* __libc_memalign(size_t, size_t);
 
 enum Kind { kUnknown, kNone, kMemory, kFile, kShort };
 static enum Kind kind = kUnknown;
-static long at, lasting, count;
+static long at, lasting, kills, count;
 static int code;
 
 static void Read(void) {
@@ -31,6 +33,7 @@ static void Read(void) {
   const char* text = getenv("SHEAF_FAULT_AT");
   at = text ? atol(text) : 0;
   lasting = getenv("SHEAF_FAULT_LASTING") != NULL;
+  kills = getenv("SHEAF_FAULT_KILLS") != NULL;
   text = getenv("SHEAF_FAULT_CODE");
   code = text ? atoi(text) : EIO;
   kind = !name                         ? kNone
@@ -43,7 +46,9 @@ static int Fails(enum Kind of) {
   if (kind == kUnknown) Read();
   if (kind != of) return 0;
   const long now = __atomic_add_fetch(&count, 1, __ATOMIC_RELAXED);
-  return at > 0 && (now == at || (lasting && now > at));
+  const int fails = at > 0 && (now == at || (lasting && now > at));
+  if (fails && kills) raise(SIGKILL);
+  return fails;
 }
 
 __attribute__((destructor)) static void Report(void) {

@@ -104,10 +104,13 @@ echo "kills"
 # Until a run has put at least so many bytes of finished rows on disk: it is then in the midst of its work, however
 # long its ranks took to start. A run that has ended is not waited for.
 journal=.slow.png.sheaf-journal
+halted=
 await_journal() {
-  for _ in $(seq 1200); do
+  for _ in $(seq 2400); do
     [[ -s $journal && $(stat -c %s $journal) -gt $1 ]] && return
     kill -0 "$job" 2>/dev/null || break
+    # Again and again: mpirun hands on what wakes it.
+    [[ -z $halted ]] || kill -STOP "$halted"
     sleep 0.05
   done
   fail "no rows on disk"
@@ -133,6 +136,33 @@ for victim in first last all; do
   same slow.png slow-one.png "resumed after a kill ($victim)"
   rm slow.png
 done
+
+# One rank stands still in the midst of its work while the others finish theirs; then all are killed. What is rendered
+# again is what it had in work, and what they had not yet finished when the journal, of 12 bytes a pixel, had most.
+pixels=$((512 * 2048))
+for ranks in 1 2; do
+  mpirun -n 3 "$sheaf" render "$scene" -o slow.png "${slow[@]}" 2>killed.err &
+  job=$!
+  await_journal 500000
+  mapfile -t children < <(pgrep -P $job)
+  halted=${children[-1]}
+  await_journal $((pixels * 12 * 95 / 100))
+  halted=
+  kill -KILL $job "${children[@]}"
+  wait $job 2>/dev/null && fail "a killed run ends well"
+  for rank in "${children[@]}"; do timeout 30 tail --pid="$rank" -f /dev/null || fail "a rank outlives a kill"; done
+  if [[ $ranks -eq 1 ]]; then
+    "$sheaf" render "$scene" -o slow.png "${slow[@]}" --json=slow.json || fail "one process goes on after ranks"
+  else
+    mpi -n $ranks "$sheaf" render "$scene" -o slow.png "${slow[@]}" --json=slow.json || fail "resumed after a kill"
+  fi
+  same slow.png slow-one.png "goes on after a kill with areas missing ($ranks)"
+  again=$(($(grep -m 1 '"primary"' slow.json | tr -dc 0-9) / 36))
+  echo "  $again of $pixels pixels are rendered again"
+  [[ $again -gt 0 && $again -lt $((pixels / 20)) ]] || fail "$again pixels are rendered again"
+  rm slow.png
+done
+
 mpirun -n 2 "$sheaf" render "$scene" -o slow.png "${slow[@]}" 2>killed.err &
 job=$!
 await_journal 100000

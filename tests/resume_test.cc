@@ -121,6 +121,16 @@ TEST_CASE("what a journal holds besides whole bands of this work changes no bit"
   CHECK(resumed_rows(outcome) == 0);
   CHECK(ReadText(work / "a.png") == whole);
 
+  // A journal of another version.
+  LeaveJournal(work, command, journal, kTwoBands);
+  bytes = ReadText(journal);
+  REQUIRE(bytes.starts_with("SHEAFJ2\n"));
+  WriteText(journal, "SHEAFJ1\n" + bytes.substr(8));
+  outcome = finish(command);
+  CHECK(Contains(outcome.err, "begun anew"));
+  CHECK(resumed_rows(outcome) == 0);
+  CHECK(ReadText(work / "a.png") == whole);
+
   // Other options: their bits, and a warning. Threads and the report are no other work.
   LeaveJournal(work, command, journal, kTwoBands);
   outcome = finish({"render", kScene, "--size", "512x1024", "-o", work / "a.png", "--resume"});

@@ -7,7 +7,7 @@
 #include <cassert>
 
 #include "sheaf/formats.h"
-#include "src/app/band_journal.h"
+#include "src/app/area_journal.h"
 #include "src/app/choose.h"
 #include "src/app/parse_options.h"
 #include "src/formats/printable.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sheaf/scene.h"
-#include "src/app/band_journal.h"
+#include "src/app/area_journal.h"
 #include "src/app/follow_render.h"
 #include "src/app/frame_writer.h"
 #include "src/app/interrupt.h"

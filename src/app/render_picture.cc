@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "src/app/band_journal.h"
+#include "src/app/area_journal.h"
 #include "src/app/choose.h"
 #include "src/app/choose_look.h"
 #include "src/app/dark_picture.h"
 #include "src/app/denoised_rows.h"
 #include "src/app/interrupt.h"
 #include "src/app/print_message.h"
+#include "src/cluster/one_rank.h"
 #include "src/core/checksum.h"
 #include "src/formats/picture.h"
 #include "src/formats/printable.h"
@@ -34,38 +35,55 @@ std::uint64_t IdentityOf(std::uint64_t run, const Frame& frame) {
 }
 
 // Nothing without an identity.
-Result<std::optional<BandJournal>> OpenJournal(const RenderRequest& request, const Frame& frame,
+Result<std::optional<AreaJournal>> OpenJournal(const RenderRequest& request, const Frame& frame,
                                                std::optional<std::uint64_t> identity) {
-  std::optional<BandJournal> journal;
+  std::optional<AreaJournal> journal;
   if (!identity) return journal;
   const std::string path = JournalPath(frame.path);
-  Result<BandJournal> opened = BandJournal::Open(path, IdentityOf(*identity, frame));
+  Result<AreaJournal> opened = AreaJournal::Open(path, IdentityOf(*identity, frame));
   if (!opened) return opened.error();
   if (opened.value().was_other()) WarnOfOtherWork(request, path);
   journal.emplace(std::move(opened).value());
   return journal;
 }
 
-// Hands the bands of an earlier run to `write`. Returns how many rows they are.
-Result<int> Restore(const PixelRect& area, Layers layers, const RowSink& write,
-                    BandJournal* journal) {
+// Hands the rows from the top that an earlier run has left to `write`. Returns how many they are.
+Result<int> Restore(const PixelRect& area, const RowSink& write, AreaJournal* journal) {
   int rows = 0;
   while (rows < area.height()) {
-    Film band;
-    const Result<bool> read = journal->Read(area.width(), layers, area.height() - rows, &band);
-    if (!read) return read.error();
-    if (!read.value()) break;
-    if (const Status written = write(band); !written) return written.error();
-    rows += band.height;
+    const Result<Film> next = journal->TakeRows(area.y0 + rows);
+    if (!next) return next.error();
+    if (next.value().height == 0) break;
+    if (const Status written = write(next.value()); !written) return written.error();
+    rows += next.value().height;
   }
   return rows;
 }
 
-// Renders alone without a leader.
-Status RenderOnRanks(const Renderer& renderer, const Frame& frame, const RenderOptions& options,
-                     const RowSink& sink, Leader* leader, FrameRecord* record,
-                     RenderProgress* progress) {
-  if (leader == nullptr) {
+std::uint64_t EarlierPixels(const AreaJournal& journal) {
+  std::uint64_t pixels = 0;
+  for (const PixelRect& area : journal.earlier()) pixels += PixelCount(area);
+  return pixels;
+}
+
+// Finished rows of `area`, from its top on, go to the journal, then to `write`.
+RowSink KeepAndWrite(const PixelRect& area, const RowSink& write, AreaJournal* journal) {
+  return [rest = area, &write, journal](const Film& rows) mutable {
+    PixelRect band = rest;
+    rest.y0 = band.y1 = band.y0 + rows.height;
+    // On disk before anything else may fail.
+    const Status kept = journal->Keep(band, rows);
+    return kept ? write(rows) : kept;
+  };
+}
+
+// Renders what the journal, which may be null, does not have: on all ranks with a leader, else in
+// this process alone. That goes on as the only rank where several have left areas here and there.
+Status RenderRest(const Renderer& renderer, const Frame& frame, const RenderOptions& options,
+                  const RowSink& write, AreaJournal* journal, Leader* leader, FrameRecord* record,
+                  RenderProgress* progress) {
+  if (leader == nullptr && (journal == nullptr || journal->earlier().empty())) {
+    const RowSink sink = journal ? KeepAndWrite(AreaOf(options), write, journal) : write;
     return renderer.RenderRows(*frame.camera, options, sink, &record->stats, progress);
   }
   const Scene& scene = renderer.scene();
@@ -73,9 +91,12 @@ Status RenderOnRanks(const Renderer& renderer, const Frame& frame, const RenderO
   if (!checked) return checked.error();
   const FrameOrder order{static_cast<int>(frame.camera_index), frame.number.has_value(),
                          frame.number.value_or(0), options.layers};
-  const Status rendered = leader->RenderRows(scene, *frame.camera, order, checked.value(), sink,
-                                             &record->stats, progress);
-  record->ranks = leader->records();
+  OneRank one;
+  std::optional<Leader> alone;
+  Leader& lead = leader ? *leader : alone.emplace(one);
+  const Status rendered = lead.RenderRows(scene, *frame.camera, order, checked.value(), write,
+                                          journal, &record->stats, progress);
+  if (leader) record->ranks = leader->records();
   return rendered;
 }
 
@@ -103,7 +124,7 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Renderer& 
   Result<FrameWriter> writer =
       FrameWriter::Create(scene, frame, options, request.bits, request.scene);
   if (!writer) return writer.error();
-  Result<std::optional<BandJournal>> journal = OpenJournal(request, frame, identity);
+  Result<std::optional<AreaJournal>> journal = OpenJournal(request, frame, identity);
   if (!journal) return journal.error();
   HeatPicture heat(options);
   DarkPicture dark(scene.settings.transfer, frame.look.value_or(Look()).ev);
@@ -117,29 +138,28 @@ Result<FrameRecord> RenderPicture(const RenderRequest& request, const Renderer& 
   DenoisedRows denoised(options, filter.value(), finish);
   const RenderOptions& work = denoised.work();
   const RowSink write = [&](const Film& rows) { return denoised.Write(rows); };
-  // On disk before anything else may fail.
-  const RowSink keep_and_write = [&](const Film& rows) {
-    const Status kept = journal.value()->Append(rows);
-    return kept ? write(rows) : kept;
-  };
-  PixelRect area = AreaOf(work);
-  if (journal.value()) {
-    const Result<int> rows = Restore(area, work.layers, write, &*journal.value());
-    if (!rows) return rows.error();
-    record.resumed_rows = rows.value();
-    if (rows.value() > 0 && !request.quiet) {
-      PrintMessage(
-          fmt::format("{}: goes on after {} of {} rows", label, rows.value(), area.height()));
+  const PixelRect area = AreaOf(work);
+  PixelRect rest = area;
+  AreaJournal* const kept = journal.value() ? &*journal.value() : nullptr;
+  if (kept != nullptr) {
+    if (const Status loaded = kept->Load(area, work.layers); !loaded) return loaded.error();
+    const std::uint64_t earlier = EarlierPixels(*kept);
+    record.resumed_rows = static_cast<int>(earlier / static_cast<std::uint64_t>(area.width()));
+    if (earlier > 0 && !request.quiet) {
+      PrintMessage(fmt::format("{}: goes on after {} of {} rows", label, record.resumed_rows,
+                               area.height()));
     }
-    area.y0 += rows.value();
+    const Result<int> rows = Restore(area, write, kept);
+    if (!rows) return rows.error();
+    rest.y0 += rows.value();
   }
-  if (area.height() > 0) {
-    FrameWatch watch(style, label, options, PixelCount(area));
-    RenderOptions rest = work;
-    if (record.resumed_rows > 0) rest.crop = area;
+  if (rest.height() > 0) {
+    FrameWatch watch(style, label, options,
+                     PixelCount(rest) - (kept == nullptr ? 0 : EarlierPixels(*kept)));
+    RenderOptions left = work;
+    if (rest.y0 > area.y0) left.crop = rest;
     const Status rendered =
-        RenderOnRanks(renderer, frame, rest, journal.value() ? keep_and_write : write, leader,
-                      &record, watch.progress());
+        RenderRest(renderer, frame, left, write, kept, leader, &record, watch.progress());
     // A signal in the last tenth of a second may find the frame finished. The command stops even
     // so.
     if (PendingSignal() != 0 || (!rendered && rendered.error().kind == ErrorKind::kInterrupted)) {

@@ -18,7 +18,7 @@ struct FrameRecord {
   std::string picture;       // its path
   RenderOptions options;
   RenderStats stats;                   // of what this run rendered
-  int resumed_rows = 0;                // that an earlier run had rendered
+  int resumed_rows = 0;                // that an earlier run had rendered, parts added up
   bool is_kept = false;                // whether an earlier run had finished it
   std::vector<RankRecord> ranks = {};  // where several processes rendered
 };

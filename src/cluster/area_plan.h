@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "sheaf/film.h"
 
@@ -25,14 +26,22 @@ class AreaPlan {
   AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels,
            int share = kAreaShare);
 
+  // `area`, of whole tiles, is there already. Before the first Next; each area once.
+  void LeaveOut(const PixelRect& area);
+
   // The next area, for a rank with so many threads; nothing is left: nothing.
   std::optional<PixelRect> Next(int threads);
 
  private:
+  // How many tiles from this one to the end of its row, or to one that is left out.
+  std::int64_t RunFrom(std::int64_t tile) const;
+
   const PixelRect pixels_;
   const int tile_size_, ranks_, columns_, share_;
   const std::int64_t most_tiles_;
   std::int64_t next_ = 0, end_;  // tiles, row by row
+  std::int64_t left_;            // tiles to hand out
+  std::vector<bool> left_out_;   // by tile; empty: none
 };
 
 }  // namespace sheaf

@@ -61,9 +61,10 @@ LeadLimits LimitsFor(int ranks, int threads, double tile_bytes) {
 }
 
 FrameLead::FrameLead(const Scene& scene, const Camera& camera, const RenderOptions& options,
-                     const RowSink& sink, Ranks& ranks, RenderProgress& progress)
+                     const RowSink& sink, KeptAreas* kept, Ranks& ranks, RenderProgress& progress)
     : options_(options),
       sink_(sink),
+      kept_(kept),
       ranks_(ranks),
       progress_(progress),
       limits_(PixelLimits(options, ranks.count())),
@@ -73,7 +74,10 @@ FrameLead::FrameLead(const Scene& scene, const Camera& camera, const RenderOptio
       records_(static_cast<std::size_t>(ranks.count())),
       running_(ranks.count()),
       start_(Clock::now()),
-      own_(scene, camera, options) {}
+      own_(scene, camera, options) {
+  if (kept_ == nullptr) return;
+  for (const PixelRect& area : kept_->earlier()) plan_.LeaveOut(area);
+}
 
 FrameLead::~FrameLead() {
   if (writing_.valid()) writing_.wait();
@@ -168,8 +172,25 @@ void FrameLead::Welcome(int rank, RankInfo info) {
 void FrameLead::Finish(int rank, FinishedArea area) {
   progress_.pixels_done.fetch_add(static_cast<std::uint64_t>(PixelCount(area.area)),
                                   std::memory_order_relaxed);
+  // On disk before anything else may fail, and before slower rows above it are there.
+  if (kept_ != nullptr) {
+    if (const Status kept = kept_->Keep(area.area, area.pixels); !kept) Fail(kept.error());
+  }
   strips_.Add(area.area, std::move(area.pixels));
   hungry_.push_back(rank);
+}
+
+// What earlier runs have left of the rows that are to be written next. It is read no sooner, so
+// that nobody holds the picture.
+void FrameLead::AddEarlier() {
+  while (kept_ != nullptr && next_earlier_ < kept_->earlier().size()) {
+    const PixelRect& area = kept_->earlier()[next_earlier_];
+    if (area.y0 > strips_.top()) return;
+    Result<Film> pixels = kept_->Read(next_earlier_++);
+    if (!pixels) return Fail(pixels.error());
+    out_pixels_ += PixelCount(area);
+    strips_.Add(area, std::move(pixels).value());
+  }
 }
 
 void FrameLead::FinishRank(int rank, RenderStats stats) {
@@ -209,6 +230,7 @@ bool FrameLead::Write() {
     out_pixels_ -= static_cast<std::int64_t>(written_.pixel_count());
     return true;
   }
+  AddEarlier();
   std::optional<Film> rows = strips_.Take();
   if (!rows) return false;
   written_ = std::move(*rows);

@@ -3,6 +3,7 @@
 #define SHEAF_CLUSTER_LEAD_FRAME_H_
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -14,6 +15,7 @@
 #include "sheaf/scene.h"
 #include "src/cluster/area_plan.h"
 #include "src/cluster/area_worker.h"
+#include "src/cluster/kept_areas.h"
 #include "src/cluster/leader.h"
 #include "src/cluster/messages.h"
 #include "src/cluster/ranks.h"
@@ -36,9 +38,9 @@ LeadLimits LimitsFor(int ranks, int threads, double tile_bytes);
 
 class FrameLead {
  public:
-  // `options` are checked. All arguments outlive it.
+  // `options` are checked; `kept` may be null. All arguments outlive it.
   FrameLead(const Scene& scene, const Camera& camera, const RenderOptions& options,
-            const RowSink& sink, Ranks& ranks, RenderProgress& progress);
+            const RowSink& sink, KeptAreas* kept, Ranks& ranks, RenderProgress& progress);
   FrameLead(const FrameLead&) = delete;
   FrameLead& operator=(const FrameLead&) = delete;
   ~FrameLead();
@@ -58,12 +60,15 @@ class FrameLead {
 
   void Welcome(int rank, RankInfo info);
   void Finish(int rank, FinishedArea area);
+  void AddEarlier();
   void FinishRank(int rank, RenderStats stats);
   void Fail(Error error);
   bool IsDone() const;
 
   const RenderOptions& options_;
   const RowSink& sink_;
+  KeptAreas* const kept_;
+  std::size_t next_earlier_ = 0;  // of what is kept
   Ranks& ranks_;
   RenderProgress& progress_;
   const LeadLimits limits_;  // in pixels

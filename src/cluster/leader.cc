@@ -19,9 +19,9 @@ Leader::~Leader() {
 }
 
 Status Leader::RenderRows(const Scene& scene, const Camera& camera, const FrameOrder& order,
-                          const RenderOptions& options, const RowSink& sink, RenderStats* stats,
-                          RenderProgress* progress) {
-  FrameLead lead(scene, camera, options, sink, ranks_, *progress);
+                          const RenderOptions& options, const RowSink& sink, KeptAreas* kept,
+                          RenderStats* stats, RenderProgress* progress) {
+  FrameLead lead(scene, camera, options, sink, kept, ranks_, *progress);
   const Status status = lead.Run(order);
   *stats = lead.Total();
   records_ = lead.records();

@@ -7,6 +7,7 @@
 #include "sheaf/error.h"
 #include "sheaf/render.h"
 #include "sheaf/scene.h"
+#include "src/cluster/kept_areas.h"
 #include "src/cluster/messages.h"
 #include "src/cluster/ranks.h"
 
@@ -29,10 +30,12 @@ class Leader {
 
   // As sheaf::RenderRows, on all ranks; LimitsFor says what is held of the picture. `order` tells
   // the others what `scene` and `camera` are. An error of a rank is that of the picture and names
-  // the rank; where its memory has run out std::bad_alloc is thrown.
+  // the rank; where its memory has run out std::bad_alloc is thrown. With `kept`, which may be
+  // null, areas of earlier runs are not rendered again, and those of this one are kept as they
+  // come.
   Status RenderRows(const Scene& scene, const Camera& camera, const FrameOrder& order,
-                    const RenderOptions& options, const RowSink& sink, RenderStats* stats,
-                    RenderProgress* progress);
+                    const RenderOptions& options, const RowSink& sink, KeptAreas* kept,
+                    RenderStats* stats, RenderProgress* progress);
 
   // Of the last picture, by rank.
   const std::vector<RankRecord>& records() const { return records_; }

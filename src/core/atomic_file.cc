@@ -1,10 +1,10 @@
 #include "src/core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstdio>
@@ -12,8 +12,10 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "src/core/checksum.h"
 #include "src/core/out_of_memory.h"
 
 namespace sheaf {
@@ -81,32 +83,83 @@ Result<Destination> Resolve(const std::string& path) {
   return destination;
 }
 
+// Whoever writes a file holds it, so that a name which nobody holds is one that a killed process
+// has left: on other machines, too, and whatever ids processes have there. -1 as it is given.
+int Hold(int descriptor) {
+  if (descriptor >= 0) flock(descriptor, LOCK_EX);
+  return descriptor;
+}
+
 // A file that no folder lists; -1 where the system has none, or no way to name it later.
 int OpenNameless(const std::string& folder) {
 #ifdef O_TMPFILE
   if (access("/proc/self/fd", X_OK) != 0) return -1;
-  return open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  return Hold(open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
 #else
   return -1;
 #endif
 }
 
-// Short whatever the file is called, because a name near the system's limit leaves no room to add.
-std::string TemporaryName(const std::string& folder) {
-  static std::atomic<unsigned> counter{0};
-  return folder + ".sheaf-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
+// The n-th hidden name beside `path`. Short whatever the file is called, because a name near the
+// system's limit leaves no room to add; of the path alone, so that a later run finds it.
+std::string TemporaryName(const std::string& path, int n) {
+  const std::string folder = FolderOf(path);
+  const std::string name = path.substr(path.rfind('/') + 1);
+  Checksum checksum;
+  checksum.Add(name.data(), name.size());
+  char digits[17];
+  std::snprintf(digits, sizeof(digits), "%016llx",
+                static_cast<unsigned long long>(checksum.value()));
+  return folder + ".sheaf-" + digits + "-" + std::to_string(n) + ".tmp";
 }
 
-// Calls `create`, which is negative where it fails, with new names in `name` until one is free: a
-// killed process of the same id may have left some behind. An errno, or 0.
+bool IsSameFile(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+// Unlinks a temporary that nobody holds.
+void RemoveLeftover(const std::string& name) {
+  struct stat status, held;
+  if (lstat(name.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+  const int descriptor = open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) return;
+  // Once it is held here, nobody else renames or unlinks it. Before, its writer may have done so,
+  // and the name be another's.
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fstat(descriptor, &held) == 0 &&
+      lstat(name.c_str(), &status) == 0 && IsSameFile(status, held)) {
+    unlink(name.c_str());
+  }
+  close(descriptor);
+}
+
+// More runs than these do not write one file at a time and are killed in the same moment.
+constexpr int kLeftoverNames = 8;
+
+void RemoveLeftovers(const std::string& path) {
+  for (int n = 0; n < kLeftoverNames; ++n) RemoveLeftover(TemporaryName(path, n));
+}
+
+// Calls `create`, which is negative where it fails, with hidden names beside `path` in `name` until
+// one is free: other runs may write the same file. An errno, or 0.
 template <typename CreateFile>
-int TryNames(const std::string& folder, std::string& name, const CreateFile& create) {
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    name = TemporaryName(folder);
+int TryNames(const std::string& path, std::string& name, const CreateFile& create) {
+  for (int n = 0; n < 100; ++n) {
+    name = TemporaryName(path, n);
     if (create() >= 0) return 0;
     if (errno != EEXIST) return errno;
   }
   return EEXIST;
+}
+
+// A new file of this name, held; negative with errno where that fails.
+int OpenNamed(const std::string& name) {
+  const int descriptor = Hold(open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  struct stat status;
+  if (descriptor < 0 || fstat(descriptor, &status) != 0 || status.st_nlink > 0) return descriptor;
+  // Another run took it for a leftover before it was held. The next name, then.
+  close(descriptor);
+  errno = EEXIST;
+  return -1;
 }
 
 }  // namespace
@@ -146,8 +199,8 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
-  close(descriptor_);
   if (kind_ == Kind::kNamed) unlink(temporary_.c_str());
+  close(descriptor_);
 }
 
 Result<AtomicFile> AtomicFile::Create(const std::string& path) {
@@ -165,16 +218,15 @@ Result<AtomicFile> AtomicFile::Create(const std::string& path) {
     return AtomicFile(descriptor, Kind::kStream, path, destination.path, "");
   }
 
+  RemoveLeftovers(destination.path);
   // 0666 lets the user's umask decide, which mkstemp would not.
   Kind kind = Kind::kNameless;
   std::string temporary;
   int descriptor = OpenNameless(destination.folder);
   if (descriptor < 0) {
     kind = Kind::kNamed;
-    const int code = TryNames(destination.folder, temporary, [&] {
-      descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      return descriptor;
-    });
+    const int code =
+        TryNames(destination.path, temporary, [&] { return descriptor = OpenNamed(temporary); });
     if (code != 0) return InputOutput(path, "cannot be created", code);
   }
   AtomicFile file(descriptor, kind, path, destination.path, temporary);
@@ -230,23 +282,23 @@ int AtomicFile::Link() {
   if (LinkTo(destination_) == 0) return 0;
   if (errno != EEXIST) return errno;
   std::string name;
-  const int code = TryNames(FolderOf(destination_), name, [&] { return LinkTo(name); });
+  const int code = TryNames(destination_, name, [&] { return LinkTo(name); });
   if (code == 0) temporary_ = std::move(name);  // which cannot fail
   return code;
 }
 
 Status AtomicFile::Commit() {
   assert(descriptor_ >= 0);
-  // close() may report a late write error (quota, network file system); the file is then not whole.
-  int code = kind_ == Kind::kNameless ? Link() : 0;
-  if (close(std::exchange(descriptor_, -1)) != 0 && kind_ != Kind::kNameless) code = errno;
-  if (code == 0 && !temporary_.empty() &&
-      std::rename(temporary_.c_str(), destination_.c_str()) != 0) {
-    code = errno;
+  // What close() reports late (quota, network file system) is asked for before: the file is held
+  // until its hidden name is gone.
+  int code = kind_ == Kind::kNameless ? Link() : Flush();
+  if (!temporary_.empty()) {
+    if (code == 0 && std::rename(temporary_.c_str(), destination_.c_str()) != 0) code = errno;
+    if (code != 0) unlink(temporary_.c_str());
   }
-  if (code == 0) return Done{};
-  if (!temporary_.empty()) unlink(temporary_.c_str());
-  return InputOutput(path_, "cannot be written", code);
+  close(std::exchange(descriptor_, -1));
+  if (code != 0) return InputOutput(path_, "cannot be written", code);
+  return Done{};
 }
 
 Status WriteFileWhole(const std::string& path, std::string_view bytes) {

@@ -19,7 +19,8 @@ Status CheckWritable(const std::string& path);
 // old file or the new one. The temporary has no name before that, and vanishes however the process
 // ends, but on file systems that know no such files: there it is hidden, and removed without a
 // Commit. Where it replaces a file it has a hidden name for the moment before the rename, since
-// no system call names a file in another's place. Pipes and devices (anything under /dev) have no
+// no system call names a file in another's place; one that a killed process left so is removed by
+// the next Create of this path. Pipes and devices (anything under /dev) have no
 // whole to protect: bytes go straight there.
 class AtomicFile {
  public:

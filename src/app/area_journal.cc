@@ -1,4 +1,4 @@
-#include "src/app/band_journal.h"
+#include "src/app/area_journal.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "src/core/checksum.h"
@@ -20,13 +22,14 @@ namespace sheaf {
 namespace {
 
 struct Header {
-  char magic[8] = {'S', 'H', 'E', 'A', 'F', 'J', '1', '\n'};
+  char magic[8] = {'S', 'H', 'E', 'A', 'F', 'J', '2', '\n'};
   std::uint64_t identity = 0;
 };
 
-// Before the floats of a band: its colours, then its layers in their order.
-struct BandHeader {
-  std::uint64_t rows, bytes, checksum;  // of what precedes it, and the floats
+// Before the floats of an area: its colours, then its layers in their order.
+struct AreaHeader {
+  std::int32_t x0, y0, x1, y1;
+  std::uint64_t bytes, checksum;  // of the floats; of what precedes it, and the floats
 };
 
 Error Failed(const std::string& path, const char* what) {
@@ -66,16 +69,30 @@ void ForEachArray(F& film, Visit visit) {
   }
 }
 
-BandHeader HeaderOf(const Film& band) {
-  BandHeader header{static_cast<std::uint64_t>(band.height), 0, 0};
+AreaHeader HeaderOf(const PixelRect& area, const Film& pixels) {
+  AreaHeader header{area.x0, area.y0, area.x1, area.y1, 0, 0};
   Checksum checksum;
-  ForEachArray(band, [&](const Film::Floats& floats) {
+  ForEachArray(pixels, [&](const Film::Floats& floats) {
     header.bytes += floats.size() * sizeof(float);
     checksum.Add(floats.data(), floats.size() * sizeof(float));
   });
-  checksum.Add(&header, offsetof(BandHeader, checksum));
+  checksum.Add(&header, offsetof(AreaHeader, checksum));
   header.checksum = checksum.value();
   return header;
+}
+
+// The floats of an area from `offset` on, which is moved behind them; nothing where they end early.
+std::optional<Film> ReadFloats(int descriptor, const PixelRect& area, Layers layers,
+                               std::uint64_t* offset) {
+  Film film(area.width(), area.height(), layers);
+  bool is_whole = true;
+  ForEachArray(film, [&](Film::Floats& floats) {
+    const std::size_t bytes = floats.size() * sizeof(float);
+    is_whole = is_whole && ReadAt(descriptor, *offset, floats.data(), bytes);
+    *offset += bytes;
+  });
+  if (!is_whole) return std::nullopt;
+  return film;
 }
 
 }  // namespace
@@ -87,10 +104,10 @@ std::string JournalPath(const std::string& output) {
 
 void RemoveJournal(const std::string& path) { unlink(path.c_str()); }
 
-Result<BandJournal> BandJournal::Open(const std::string& path, std::uint64_t identity) {
+Result<AreaJournal> AreaJournal::Open(const std::string& path, std::uint64_t identity) {
   const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (descriptor < 0) return Failed(path, "cannot be opened");
-  BandJournal journal(descriptor, path);
+  AreaJournal journal(descriptor, path);
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     return Failed(path,
                   errno == EWOULDBLOCK ? "another run is at this picture" : "cannot be locked");
@@ -110,7 +127,7 @@ Result<BandJournal> BandJournal::Open(const std::string& path, std::uint64_t ide
   return journal;
 }
 
-Status BandJournal::Start(std::uint64_t identity) {
+Status AreaJournal::Start(std::uint64_t identity) {
   Header header;
   header.identity = identity;
   if (ftruncate(descriptor_, 0) != 0 || !WriteAt(descriptor_, 0, &header, sizeof(header))) {
@@ -120,50 +137,88 @@ Status BandJournal::Start(std::uint64_t identity) {
   return Done{};
 }
 
-BandJournal::BandJournal(BandJournal&& other) noexcept
+AreaJournal::AreaJournal(AreaJournal&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       path_(std::move(other.path_)),
       was_other_(other.was_other_),
-      end_(other.end_) {}
+      picture_(other.picture_),
+      layers_(other.layers_),
+      end_(other.end_),
+      earlier_(std::move(other.earlier_)),
+      offsets_(std::move(other.offsets_)) {}
 
-BandJournal::~BandJournal() {
+AreaJournal::~AreaJournal() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-Result<bool> BandJournal::Read(int width, Layers layers, int rows, Film* band) {
-  BandHeader header;
-  const bool has_header = ReadAt(descriptor_, end_, &header, sizeof(header));
-  if (has_header && header.rows >= 1 && header.rows <= static_cast<std::uint64_t>(rows)) {
-    *band = Film(width, static_cast<int>(header.rows), layers);
-    std::uint64_t at = end_ + sizeof(header);
-    bool is_whole = true;
-    ForEachArray(*band, [&](Film::Floats& floats) {
-      const std::size_t bytes = floats.size() * sizeof(float);
-      is_whole = is_whole && ReadAt(descriptor_, at, floats.data(), bytes);
-      at += bytes;
-    });
-    if (is_whole) {
-      const BandHeader found = HeaderOf(*band);
-      is_whole = found.bytes == header.bytes && found.checksum == header.checksum;
-    }
-    if (is_whole) {
-      end_ = at;
-      return true;
-    }
-  }
+Status AreaJournal::Load(const PixelRect& picture, Layers layers) {
+  picture_ = picture;
+  layers_ = layers;
+  while (Index()) continue;
   // What is torn must not stand behind a shorter record.
   if (ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) {
     return Failed(path_, "cannot be written");
   }
-  return false;
+  std::vector<std::size_t> order(earlier_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const PixelRect &first = earlier_[a], &second = earlier_[b];
+    return std::pair(first.y0, first.x0) < std::pair(second.y0, second.x0);
+  });
+  std::vector<PixelRect> areas;
+  std::vector<std::uint64_t> offsets;
+  for (const std::size_t i : order) {
+    areas.push_back(earlier_[i]);
+    offsets.push_back(offsets_[i]);
+  }
+  earlier_ = std::move(areas);
+  offsets_ = std::move(offsets);
+  return Done{};
 }
 
-Status BandJournal::Append(const Film& band) {
-  const BandHeader header = HeaderOf(band);
+bool AreaJournal::Index() {
+  AreaHeader header;
+  if (!ReadAt(descriptor_, end_, &header, sizeof(header))) return false;
+  const PixelRect area{header.x0, header.y0, header.x1, header.y1};
+  if (area.x0 < picture_.x0 || area.x0 >= area.x1 || area.x1 > picture_.x1 ||
+      area.y0 < picture_.y0 || area.y0 >= area.y1 || area.y1 > picture_.y1) {
+    return false;
+  }
+  std::uint64_t at = end_ + sizeof(header);
+  const std::optional<Film> film = ReadFloats(descriptor_, area, layers_, &at);
+  if (!film) return false;
+  const AreaHeader found = HeaderOf(area, *film);
+  if (found.bytes != header.bytes || found.checksum != header.checksum) return false;
+  earlier_.push_back(area);
+  offsets_.push_back(end_ + sizeof(header));
+  end_ = at;
+  return true;
+}
+
+Result<Film> AreaJournal::TakeRows(int y) {
+  if (earlier_.empty() || earlier_[0].y0 != y || earlier_[0].width() != picture_.width()) {
+    return Film();
+  }
+  Result<Film> rows = Read(0);
+  earlier_.erase(earlier_.begin());
+  offsets_.erase(offsets_.begin());
+  return rows;
+}
+
+Result<Film> AreaJournal::Read(std::size_t index) {
+  std::uint64_t at = offsets_[index];
+  errno = 0;
+  std::optional<Film> film = ReadFloats(descriptor_, earlier_[index], layers_, &at);
+  if (!film) return Failed(path_, "cannot be read");
+  return std::move(*film);
+}
+
+Status AreaJournal::Keep(const PixelRect& area, const Film& pixels) {
+  const AreaHeader header = HeaderOf(area, pixels);
   std::uint64_t at = end_;
   bool is_written = WriteAt(descriptor_, at, &header, sizeof(header));
   at += sizeof(header);
-  ForEachArray(band, [&](const Film::Floats& floats) {
+  ForEachArray(pixels, [&](const Film::Floats& floats) {
     const std::size_t bytes = floats.size() * sizeof(float);
     is_written = is_written && WriteAt(descriptor_, at, floats.data(), bytes);
     at += bytes;
