@@ -62,6 +62,8 @@ done
 refused 2 "whose bits differ" -n 1 "$sheaf" render "$scene" -o a.png --precision fast : \
   -n 1 "$sheaf" render "$scene" -o a.png --precision fast --target "$last"
 
+refused 2 "--budget: of one process alone" -n 2 "$sheaf" render "$scene" -o a.png --budget 1
+
 echo "files"
 # Rank 1 stands where the scene is not.
 mkdir here there

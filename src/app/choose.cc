@@ -154,6 +154,7 @@ RenderOptions SmallPicture(const RenderOptions& options, int side) {
   small.samples = 1;
   small.contrast.reset();
   small.error.reset();
+  small.budget.reset();
   small.timing = Timing::kOff;
   small.layers = {};
   return small;

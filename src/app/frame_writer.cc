@@ -27,7 +27,8 @@ std::string SettingsText(const RenderOptions& options, const Frame& frame) {
       "eye {} {} {}, look at {} {} {}, {} {}{}{}{}{}",
       options.width, options.height, options.samples, options.max_depth,
       PrecisionName(options.precision), options.min_throughput,
-      options.error      ? fmt::format(", error {:g}", *options.error)
+      options.budget     ? fmt::format(", budget {:g} s", *options.budget)
+      : options.error    ? fmt::format(", error {:g}", *options.error)
       : options.contrast ? fmt::format(", adaptive {:g}", *options.contrast)
                          : "",
       eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z, name, ParameterOf(camera.projection),

@@ -64,6 +64,20 @@ Status CheckSequence(const RenderRequest& request) {
   return path ? Status(Done{}) : path.error();
 }
 
+// Whether the time for a picture fits what else is asked for.
+Status CheckBudget(const RenderRequest& request) {
+  if (!request.budget) return Done{};
+  if (request.contrast) return Usage("--budget: not together with --adaptive");
+  if (request.resume)
+    return Usage("--budget, --resume: no part of a picture is done before all is");
+  if (SequenceOf(request)) {
+    return Usage(
+        "--budget: for stills, as the frames of a sequence would differ in their error; --error "
+        "gives all the same");
+  }
+  return Done{};
+}
+
 std::vector<Output> OutputsOf(const RenderRequest& request, const std::vector<Frame>& frames) {
   std::vector<Output> outputs = {{"--json", request.statistics}};
   for (const Frame& frame : frames) {
@@ -112,6 +126,7 @@ SceneOptions OptionsAt(const RenderRequest& request, int frame) {
 }
 
 Status CheckCommandLine(const RenderRequest& request) {
+  if (const Status sound = CheckBudget(request); !sound) return sound;
   if (const Status sound = CheckSequence(request); !sound) return sound;
   if (request.resume && !IsFilePath(request.output)) {
     return Usage(fmt::format("--resume: {} is no file that could be gone on with",

@@ -26,7 +26,9 @@ Result<RenderOptions> MergeOptions(const RenderRequest& request, const Settings&
   // The scene's samples may be those of a picture without such a goal.
   if (request.error && !request.samples) options.samples = std::max(options.samples, kMostForError);
   if (request.error && request.contrast) return Usage("--error: not together with --adaptive");
-  if (!request.samples && !request.contrast && !request.error) {
+  options.budget = request.budget;
+  if (request.budget && !request.samples) options.samples = kMaxSamples;
+  if (!request.samples && !request.contrast && !request.error && !request.budget) {
     options.contrast = settings.contrast;
     options.error = settings.error;
   }

@@ -84,9 +84,12 @@ FrameWatch::FrameWatch(ProgressStyle style, std::string label, const RenderOptio
                                  ? fmt::format(", crop {},{},{},{}", options.crop->x0,
                                                options.crop->y0, options.crop->x1, options.crop->y1)
                                  : "";
-    PrintError(fmt::format("{}: rendering {}x{}, {} {} a pixel{}\n", label_, options.width,
-                           options.height, options.samples,
-                           options.samples == 1 ? "sample" : "samples", crop));
+    const std::string samples = options.budget
+                                    ? fmt::format("{:g} s", *options.budget)
+                                    : fmt::format("{} {} a pixel", options.samples,
+                                                  options.samples == 1 ? "sample" : "samples");
+    PrintError(fmt::format("{}: rendering {}x{}, {}{}\n", label_, options.width, options.height,
+                           samples, crop));
   }
   thread_ = std::thread([this] { Watch(); });
 }
@@ -155,6 +158,11 @@ void FrameWatch::Finish(const RenderStats& stats) {
   PrintError(fmt::format("{}: {:.2f} million rays in {:.3f} s, {:.1f} million rays/s, {}, {} {}\n",
                          label_, rays * 1e-6, seconds, seconds > 0.0 ? rays / seconds * 1e-6 : 0.0,
                          stats.target, stats.threads, stats.threads == 1 ? "thread" : "threads"));
+  if (stats.reached.rounds == 0) return;
+  PrintError(fmt::format("{}: error {:g} reached, {:.1f} samples a pixel\n", label_,
+                         stats.reached.error,
+                         static_cast<double>(stats.reached.samples) /
+                             static_cast<double>(std::max<std::uint64_t>(pixels_, 1))));
 }
 
 SequencePace::SequencePace(std::uint64_t pictures) : pictures_(pictures), start_(Clock::now()) {}

@@ -7,6 +7,7 @@
 
 #include "sheaf/scene.h"
 #include "src/app/area_journal.h"
+#include "src/app/choose.h"
 #include "src/app/follow_render.h"
 #include "src/app/frame_writer.h"
 #include "src/app/interrupt.h"
@@ -144,6 +145,9 @@ Status RunLeading(const RenderRequest& given, Ranks* ranks) {
   if (ranks != nullptr) {
     leader.emplace(*ranks);
     HoldFiles();
+  }
+  if (ranks != nullptr && given.budget) {
+    return Usage("--budget: of one process alone; --error goes for many");
   }
   Result<RenderPlan> planned = PlanRender(given);
   if (!planned) return planned.error();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 
 #include "src/app/add_options.h"
 #include "src/app/layer_picture.h"
@@ -30,6 +31,12 @@ std::optional<FrameRange> ParseFrames(const std::string& text) {
       dots == std::string::npos ? first : ParseInteger(text.substr(dots + 2), -kLast, kLast);
   if (!first || !last || *last < *first) return std::nullopt;
   return FrameRange{*first, *last};
+}
+
+// Too little for a ray is enough for the least picture that there is.
+std::optional<double> ParseBudget(const std::string& text) {
+  const auto seconds = ParseNumber(text, 0, std::numeric_limits<double>::max());
+  return seconds && *seconds > 0 ? seconds : std::nullopt;
 }
 
 }  // namespace
@@ -62,6 +69,8 @@ void AddRenderOptions(CLI::App& app, RenderRequest& request) {
            "All samples only where neighbours differ by more than T; else one");
   AddShare(app, "--error", request.error, "E",
            "Samples until the error of a pixel is at most E; --spp N: N at most");
+  AddParsed(app, "--budget", request.budget, "SECONDS", "a number above 0",
+            "Samples where the error is largest, for so long a picture", &ParseBudget);
   AddShare(app, "--min-throughput,--min-weight", request.min_throughput, "W",
            "Rays that add at most this part of what they see are not traced");
   AddParsed(app, "--crop", request.crop, "x0,y0,x1,y1",

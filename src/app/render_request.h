@@ -41,6 +41,7 @@ struct RenderRequest {
   std::string integrator;  // empty: the scene's
   std::optional<int> samples, max_depth;
   std::optional<double> error, contrast, min_throughput;
+  std::optional<double> budget;  // seconds a picture
   std::string target = "auto";
   std::string precision = "strict";
   std::optional<int> threads, bits, tile_size;

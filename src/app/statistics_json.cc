@@ -95,6 +95,12 @@ Json FrameJson(const FrameRecord& frame) {
   if (!frame.ranks.empty()) json["ranks"] = RanksJson(frame.ranks);
   if (options.integrator) json["integrator"] = IntegratorName(*options.integrator);
   if (options.error) json["error"] = *options.error;
+  if (options.budget) json["budget"] = *options.budget;
+  if (stats.reached.rounds > 0) {
+    json["reached"] = {{"error", stats.reached.error},
+                       {"rounds", stats.reached.rounds},
+                       {"samples", stats.reached.samples}};
+  }
   if (options.contrast) json["adaptive"] = *options.contrast;
   if (options.min_throughput > 0) json["min_weight"] = options.min_throughput;
   if (options.crop) {

@@ -50,6 +50,9 @@ void AddSubmitOptions(CLI::App& app, SubmitRequest& request) {
 Status CheckParts(const SubmitRequest& request) {
   const RenderRequest& render = request.render;
   if (render.part) return Usage("--tile: sheaf submit makes the parts, as many as --parts says");
+  if (render.budget) {
+    return Usage("--budget: parts would differ in their error; --error gives all the same");
+  }
   if (render.output == "-" || render.output.starts_with("/dev/")) {
     return Usage(fmt::format("-o {}: parts need a file", Printable(render.output)));
   }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
+
+#include "src/render/render_rounds.h"
 
 namespace sheaf {
 namespace {
@@ -35,10 +38,15 @@ std::string Complaint(const RenderOptions& options) {
   if (options.error && !(*options.error > 0 && *options.error <= 1)) {
     return "error must lie in (0, 1]";
   }
-  if (options.error && options.samples < kLeastErrorSamples) {
-    return fmt::format("an error to reach needs {} samples or more", kLeastErrorSamples);
+  if (options.budget && !(*options.budget > 0 && std::isfinite(*options.budget))) {
+    return "budget must be a number of seconds above 0";
   }
-  if (options.error && options.contrast) return "contrast and error exclude each other";
+  const char* const goal = options.budget ? "budget" : options.error ? "error" : nullptr;
+  if (goal && options.samples < kLeastErrorSamples) {
+    return fmt::format("{} needs {} samples or more",
+                       options.budget ? "a budget" : "an error to reach", kLeastErrorSamples);
+  }
+  if (goal && options.contrast) return fmt::format("contrast and {} exclude each other", goal);
   if (options.precision == Precision::kFast && options.target.is_scalar()) {
     return "fast precision needs a SIMD target";
   }
@@ -60,17 +68,19 @@ Result<RenderOptions> CheckOptions(const RenderOptions& options, const Settings&
     if (option == kFromScene) option = setting;
   };
   // Sampling is the scene's or the caller's as a whole.
-  if (options.samples == kFromScene && !options.contrast && !options.error) {
+  const bool has_goal = options.contrast || options.error || options.budget;
+  if (options.samples == kFromScene && !has_goal) {
     checked.contrast = settings.contrast;
     checked.error = settings.error;
   }
   settle(checked.width, settings.width);
   settle(checked.height, settings.height);
-  settle(checked.samples, settings.samples);
+  settle(checked.samples, options.budget ? kMaxSamples : settings.samples);
   settle(checked.max_depth, settings.max_depth);
   if (std::string complaint = Complaint(checked); !complaint.empty()) {
     return Error{ErrorKind::kUsage, std::move(complaint)};
   }
+  if (checked.budget && !checked.error) checked.error = kLeastGoal;
   return checked;
 }
 

@@ -1,19 +1,17 @@
 #include "src/render/render_bands.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <vector>
 
 #include "src/core/parallel.h"
+#include "src/render/tile_cost.h"
 
 namespace sheaf {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Workers = std::vector<std::unique_ptr<TileWorker>>;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -41,46 +39,18 @@ int BandRows(const PixelRect& area, const RenderOptions& options, int threads) {
   return CeilDivide(all, CeilDivide(all, tile_rows)) * size;
 }
 
-// Renders a tile and gives its pixels, as Layer::kHeat, what it took.
-void RenderWithHeat(TileWorker& worker, const PixelRect& tile, int film_x, int film_y, Film& film) {
-  const std::uint64_t rays = worker.rays().traced();
-  const LaneUse use = worker.clock().all_lane_use();
-  const Clock::time_point start = Clock::now();
-  worker.Render(tile, film_x, film_y, film);
-  const double seconds = SecondsSince(start);
-  const LaneUse now = worker.clock().all_lane_use();
-
-  const double pixels = static_cast<double>(tile.width()) * static_cast<double>(tile.height());
-  const double lanes = static_cast<double>(std::max<std::uint64_t>(now.lanes - use.lanes, 1));
-  const std::array<float, 3> heat = {
-      static_cast<float>(1e6 * seconds / pixels),
-      static_cast<float>(static_cast<double>(now.live - use.live) / lanes),
-      static_cast<float>(static_cast<double>(worker.rays().traced() - rays) / pixels)};
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      std::copy(heat.begin(), heat.end(), film.at(Layer::kHeat, x - film_x, y - film_y));
-    }
-  }
-}
-
-// Hands the tiles of `band` to the workers until all are done or a stop is asked for.
-void RenderTiles(const Workers& workers, const PixelRect& band, int tile_size, Film& film,
+// Renders the tiles of `band` until all are done or a stop is asked for.
+void RenderTiles(const TileCrew& crew, const PixelRect& band, Film& film,
                  RenderProgress& progress) {
-  const auto columns = static_cast<std::uint64_t>(CeilDivide(band.width(), tile_size));
-  const auto rows = static_cast<std::uint64_t>(CeilDivide(band.height(), tile_size));
-  ParallelFor(
-      static_cast<int>(workers.size()), columns * rows, [&](int chosen, std::uint64_t item) {
-        if (progress.stop.load(std::memory_order_relaxed)) return;
-        PixelRect tile;
-        tile.x0 = band.x0 + static_cast<int>(item % columns) * tile_size;
-        tile.y0 = band.y0 + static_cast<int>(item / columns) * tile_size;
-        tile.x1 = std::min(tile.x0 + tile_size, band.x1);
-        tile.y1 = std::min(tile.y0 + tile_size, band.y1);
-        TileWorker& worker = *workers[static_cast<std::size_t>(chosen)];
+  crew.ForEachTile(
+      band, progress.stop, [&](TileWorker& worker, const PixelRect& tile, std::uint64_t) {
+        const auto render = [&] { worker.Render(tile, band.x0, band.y0, film); };
         if (film.has(Layer::kHeat)) {
-          RenderWithHeat(worker, tile, band.x0, band.y0, film);
+          TileCost cost;
+          cost.Measure(worker, render);
+          StoreHeat(cost, tile, band.x0, band.y0, film);
         } else {
-          worker.Render(tile, band.x0, band.y0, film);
+          render();
         }
         progress.pixels_done.fetch_add(
             static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height()),
@@ -88,28 +58,15 @@ void RenderTiles(const Workers& workers, const PixelRect& band, int tile_size, F
       });
 }
 
-void AddCounts(const TileWorker& worker, RenderStats& stats) {
-  stats.rays += worker.rays();
-  stats.buffer_bytes += worker.buffer_bytes();
-  for (int i = 0; i < static_cast<int>(Phase::kCount); ++i) {
-    const Phase phase = static_cast<Phase>(i);
-    stats.phase_seconds[i] += worker.clock().seconds(phase);
-    stats.lane_use[i] += worker.clock().lane_use(phase);
-  }
-}
-
 }  // namespace
 
 Status RenderBands(const PixelRect& area, const RenderOptions& options,
-                   const std::function<std::unique_ptr<TileWorker>()>& make_worker,
-                   const BandSink& sink, RenderStats& stats, RenderProgress& progress) {
+                   const MakeWorker& make_worker, const BandSink& sink, RenderStats& stats,
+                   RenderProgress& progress) {
   const int size = options.tile_size;
   const int wanted = ThreadCount(options.threads);
   const int rows = BandRows(area, options, wanted);
-  const std::int64_t tiles = std::int64_t{CeilDivide(area.width(), size)} * CeilDivide(rows, size);
-  stats.threads = static_cast<int>(std::min<std::int64_t>(wanted, tiles));
-  Workers workers(static_cast<std::size_t>(stats.threads));
-  for (auto& worker : workers) worker = make_worker();
+  const TileCrew crew(wanted, TileCount({0, 0, area.width(), rows}, size), size, make_worker);
 
   BandQueue queue(sink, progress.stop);
   Status status = Done{};
@@ -117,7 +74,7 @@ Status RenderBands(const PixelRect& area, const RenderOptions& options,
     const PixelRect band{area.x0, y, area.x1, std::min(y + rows, area.y1)};
     const Clock::time_point start = Clock::now();
     Film& film = queue.Front(band.width(), band.height(), options.layers);
-    RenderTiles(workers, band, size, film, progress);
+    RenderTiles(crew, band, film, progress);
     stats.wall_seconds += SecondsSince(start);
 
     status = queue.Wait();
@@ -132,7 +89,7 @@ Status RenderBands(const PixelRect& area, const RenderOptions& options,
       queue.Push();
     }
   }
-  for (const auto& worker : workers) AddCounts(*worker, stats);
+  crew.AddTo(stats);
   return status;
 }
 

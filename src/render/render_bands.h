@@ -2,15 +2,12 @@
 #ifndef SHEAF_RENDER_RENDER_BANDS_H_
 #define SHEAF_RENDER_RENDER_BANDS_H_
 
-#include <functional>
-#include <memory>
-
 #include "sheaf/error.h"
 #include "sheaf/film.h"
 #include "sheaf/render.h"
 #include "sheaf/stats.h"
 #include "src/render/band_queue.h"
-#include "src/render/tile_worker.h"
+#include "src/render/tile_crew.h"
 
 namespace sheaf {
 
@@ -18,8 +15,8 @@ namespace sheaf {
 // the threads gets a worker of its own from `make_worker`, which is called before any ray is
 // traced. Fills of `stats` the threads, the time and what the workers counted.
 Status RenderBands(const PixelRect& area, const RenderOptions& options,
-                   const std::function<std::unique_ptr<TileWorker>()>& make_worker,
-                   const BandSink& sink, RenderStats& stats, RenderProgress& progress);
+                   const MakeWorker& make_worker, const BandSink& sink, RenderStats& stats,
+                   RenderProgress& progress);
 
 }  // namespace sheaf
 

@@ -17,6 +17,7 @@
 #include "src/render/place_scene.h"
 #include "src/render/prepare_scene.h"
 #include "src/render/render_bands.h"
+#include "src/render/render_rounds.h"
 #include "src/render/sample_pattern.h"
 #include "src/render/scalar_tile_renderer.h"
 #include "src/render/tile_renderer.h"
@@ -103,7 +104,6 @@ Result<std::unique_ptr<CompiledFrame<Real>>> CompileFrame(ScenePreparer& prepare
 }
 
 // Renders the compiled frame.
-using MakeWorker = std::function<std::unique_ptr<TileWorker>()>;
 using Schedule = std::function<Status(const RenderOptions& options, const MakeWorker& make_worker)>;
 
 template <typename Real>
@@ -153,10 +153,25 @@ Status RenderFrame(ScenePreparer& scene, const Camera& camera, const RenderOptio
   RenderProgress ignored_progress;
   RenderStats& kept_stats = stats ? *stats : ignored_stats;
   RenderProgress& kept_progress = progress ? *progress : ignored_progress;
+  if (options.budget) {
+    const TimeUsed used = [start = Clock::now(), budget = *options.budget] {
+      return std::chrono::duration<double>(Clock::now() - start).count() / budget;
+    };
+    return RenderWhile(used, scene, camera, options, sink, kept_stats, kept_progress);
+  }
   const Schedule bands = [&](const RenderOptions& checked, const MakeWorker& make_worker) {
     return RenderBands(AreaOf(checked), checked, make_worker, sink, kept_stats, kept_progress);
   };
   return RenderScheduled(scene, camera, options, skips, bands, kept_stats, kept_progress);
+}
+
+Status RenderWhile(const TimeUsed& used, ScenePreparer& scene, const Camera& camera,
+                   const RenderOptions& options, const BandSink& sink, RenderStats& stats,
+                   RenderProgress& progress) {
+  const Schedule rounds = [&](const RenderOptions& checked, const MakeWorker& make_worker) {
+    return RenderRounds(checked, make_worker, used, sink, stats, progress);
+  };
+  return RenderScheduled(scene, camera, options, Skips::kOn, rounds, stats, progress);
 }
 
 Status RenderAreas(const Scene& scene, const Camera& camera, const RenderOptions& options,

@@ -9,6 +9,7 @@
 #include "sheaf/scene.h"
 #include "src/render/band_queue.h"
 #include "src/render/prepare_scene.h"
+#include "src/render/sample_round.h"
 
 namespace sheaf {
 
@@ -16,6 +17,11 @@ namespace sheaf {
 // null.
 Status RenderFrame(ScenePreparer& scene, const Camera& camera, const RenderOptions& options,
                    Skips skips, const BandSink& sink, RenderStats* stats, RenderProgress* progress);
+
+// The same of a frame with a budget, of which `used` tells the part that is used.
+Status RenderWhile(const TimeUsed& used, ScenePreparer& scene, const Camera& camera,
+                   const RenderOptions& options, const BandSink& sink, RenderStats& stats,
+                   RenderProgress& progress);
 
 // Which pixels of the picture come next; false: none. It may wait.
 using AreaSource = std::function<bool(PixelRect* area)>;

@@ -8,18 +8,14 @@ namespace sheaf {
 
 template <typename Real>
 void ScalarTileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, Film& film) {
-  const bool has_layers = HasFirstHitLayers(film);
   const auto write = [&](int x, int y, const Vec3<Real>& colour, const FirstHit<Real>& first) {
-    if (has_layers) StoreLayers(film, x - film_x, y - film_y, LayersOf(first, frame_));
-    float* rgb = film.pixel(x - film_x, y - film_y);
-    rgb[0] = static_cast<float>(colour.x);
-    rgb[1] = static_cast<float>(colour.y);
-    rgb[2] = static_cast<float>(colour.z);
+    Write(x - film_x, y - film_y, colour, first, film);
   };
   if (frame_.is_adaptive()) {
     scalar::RenderAdaptively(frame_, tile, scratch_, rays_, stop_, write);
     return;
   }
+  const bool has_layers = HasFirstHitLayers(film);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1 && !stop_.load(std::memory_order_relaxed); ++x) {
       FirstHit<Real> first;
@@ -28,6 +24,35 @@ void ScalarTileRenderer<Real>::Render(const PixelRect& tile, int film_x, int fil
       write(x, y, colour, first);
     }
   }
+}
+
+template <typename Real>
+void ScalarTileRenderer<Real>::RenderRound(const PixelRect& tile, int film_x, int film_y,
+                                           Film& film, SampleRound& round) {
+  FrameView<Real> frame = frame_;
+  frame.error = static_cast<Real>(round.goal());
+  const bool is_wanted = round.is_first() && HasFirstHitLayers(film);
+  const auto is_stopped = [&] { return stop_.load(std::memory_order_relaxed) || round.Cut(); };
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      scalar::PixelSums<Real>& sums = round.sums().template at<Real>(x, y);
+      if (sums.samples == frame.sample_x.size() || sums.IsConverged(frame.error)) continue;
+      if (is_stopped()) return;
+      FirstHit<Real> first;
+      scalar::SamplePixel(frame, x, y, sums, scratch_, rays_, stop_, is_wanted ? &first : nullptr);
+      if (round.is_first()) Write(x - film_x, y - film_y, sums.mean(), first, film);
+    }
+  }
+}
+
+template <typename Real>
+void ScalarTileRenderer<Real>::Write(int x, int y, const Vec3<Real>& colour,
+                                     const FirstHit<Real>& first, Film& film) const {
+  if (HasFirstHitLayers(film)) StoreLayers(film, x, y, LayersOf(first, frame_));
+  float* rgb = film.pixel(x, y);
+  rgb[0] = static_cast<float>(colour.x);
+  rgb[1] = static_cast<float>(colour.y);
+  rgb[2] = static_cast<float>(colour.z);
 }
 
 template class ScalarTileRenderer<float>;

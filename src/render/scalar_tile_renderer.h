@@ -19,8 +19,13 @@ class ScalarTileRenderer : public TileWorker {
       : TileWorker(PhaseClock(Timing::kOff, 1)), frame_(frame), stop_(stop) {}
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) override;
+  void RenderRound(const PixelRect& tile, int film_x, int film_y, Film& film,
+                   SampleRound& round) override;
 
  private:
+  // The layers, where the film has any, and the colour of a pixel.
+  void Write(int x, int y, const Vec3<Real>& colour, const FirstHit<Real>& first, Film& film) const;
+
   const FrameView<Real>& frame_;
   const std::atomic<bool>& stop_;
   scalar::PixelScratch<Real> scratch_;

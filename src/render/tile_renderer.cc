@@ -52,13 +52,38 @@ void TileRenderer<Real>::Render(const PixelRect& tile, int film_x, int film_y, F
   if (records) first_hits_.Start(order_.pixels().count);
   RenderSample(order_.pixels(), 0, records ? &first_hits_ : nullptr);
   if (frame_.converges()) {
-    RefineUntilConverged();
+    converging_.Start(order_.pixels(), sample_.view(), sample_count(), frame_.error);
+    RefineUntilConverged([this] { return IsStopped(); });
+    converging_.Divide();
   } else if (is_adaptive) {
     RefineEdges(tile);
   } else if (frame_.sample_x.size() > 1) {
     RefineAll();
   }
   WritePixels(tile, film_x, film_y, film);
+  clock_.Charge(Phase::kAccumulate);
+}
+
+template <typename Real>
+void TileRenderer<Real>::RenderRound(const PixelRect& tile, int film_x, int film_y, Film& film,
+                                     SampleRound& round) {
+  order_.Arrange(tile);
+  const PixelList<Real>& pixels = order_.pixels();
+  const Real goal = static_cast<Real>(round.goal());
+  if (round.is_first()) {
+    const bool records = HasFirstHitLayers(film);
+    if (records) first_hits_.Start(pixels.count);
+    RenderSample(pixels, 0, records ? &first_hits_ : nullptr);
+    converging_.Start(pixels, sample_.view(), sample_count(), goal);
+  } else {
+    converging_.Resume(pixels, round.sums(), sample_count(), goal);
+  }
+  RefineUntilConverged([&] { return IsStopped() || round.Cut(); });
+  converging_.Save(round.sums());
+  if (round.is_first()) {
+    converging_.Divide();
+    WritePixels(tile, film_x, film_y, film);
+  }
   clock_.Charge(Phase::kAccumulate);
 }
 
@@ -253,15 +278,13 @@ void TileRenderer<Real>::RefineEdges(const PixelRect& tile) {
 }
 
 template <typename Real>
-void TileRenderer<Real>::RefineUntilConverged() {
-  converging_.Start(order_.pixels(), sample_.view());
-  const std::size_t samples = frame_.sample_x.size();
-  for (std::size_t i = 1; i < samples && converging_.pixels().count > 0 && !IsStopped(); ++i) {
-    RenderSample(converging_.pixels(), i, nullptr);
-    converging_.Add(sample_.view(), frame_.error);
+template <class IsOver>
+void TileRenderer<Real>::RefineUntilConverged(IsOver is_over) {
+  while (converging_.pixels().count > 0 && !is_over()) {
+    RenderSample(converging_.pixels(), converging_.index(), nullptr);
+    converging_.Add(sample_.view());
     clock_.Charge(Phase::kAccumulate);
   }
-  converging_.Divide();
 }
 
 template <typename Real>

@@ -38,6 +38,8 @@ class TileRenderer : public TileWorker {
                const std::atomic<bool>& stop);
 
   void Render(const PixelRect& tile, int film_x, int film_y, Film& film) override;
+  void RenderRound(const PixelRect& tile, int film_x, int film_y, Film& film,
+                   SampleRound& round) override;
   std::size_t buffer_bytes() const override;
 
  private:
@@ -66,10 +68,13 @@ class TileRenderer : public TileWorker {
   RayQueue<Real>& next(ChildKind kind) { return next_queues_[static_cast<std::size_t>(kind)]; }
   void RefineEdges(const PixelRect& tile);
   void RefineAll();
-  void RefineUntilConverged();
+  // Where they are not, they get samples until is_over().
+  template <class IsOver>
+  void RefineUntilConverged(IsOver is_over);
   // Of the samples of the ordered pixels.
   ColourView<Real> means() const;
   void WritePixels(const PixelRect& tile, int film_x, int film_y, Film& film);
+  std::uint32_t sample_count() const { return static_cast<std::uint32_t>(frame_.sample_x.size()); }
   bool IsStopped() const { return stop_.load(std::memory_order_relaxed); }
 
   const FrameView<Real>& frame_;

@@ -7,6 +7,7 @@
 #include "sheaf/film.h"
 #include "sheaf/stats.h"
 #include "src/render/phase_clock.h"
+#include "src/render/sample_round.h"
 
 namespace sheaf {
 
@@ -17,6 +18,11 @@ class TileWorker {
   // Renders the pixels of `tile`, in picture coordinates, into `film`, whose top left pixel is
   // (film_x, film_y).
   virtual void Render(const PixelRect& tile, int film_x, int film_y, Film& film) = 0;
+
+  // The same for a round of a frame: the pixels of `tile` whose error is above the round's goal get
+  // samples, which are added to the round's sums. The first round alone writes into `film`.
+  virtual void RenderRound(const PixelRect& tile, int film_x, int film_y, Film& film,
+                           SampleRound& round) = 0;
 
   // What its buffers take, in bytes.
   virtual std::size_t buffer_bytes() const { return 0; }

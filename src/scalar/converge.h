@@ -36,6 +36,24 @@ bool IsConverged(Vec3<Real> sum, Vec3<Real> squares, std::uint32_t samples, Real
          IsConverged(sum.z, squares.z, samples, error);
 }
 
+// A pixel's samples so far, added up in their order.
+template <typename Real>
+struct PixelSums {
+  Vec3<Real> sum = {0, 0, 0}, squares = {0, 0, 0};
+  std::uint32_t samples = 0;
+
+  void Add(Vec3<Real> colour) {
+    sum = sum + colour;
+    squares = squares + Vec3<Real>{colour.x * colour.x, colour.y * colour.y, colour.z * colour.z};
+    ++samples;
+  }
+  // Whether `error` is reached, now that they are judged.
+  bool IsConverged(Real error) const {
+    return IsJudgedAt(samples) && scalar::IsConverged(sum, squares, samples, error);
+  }
+  Vec3<Real> mean() const { return sum / static_cast<Real>(samples); }
+};
+
 }  // namespace sheaf::scalar
 
 #endif  // SHEAF_SCALAR_CONVERGE_H_

@@ -275,26 +275,28 @@ Vec3<Real> RenderSample(const FrameView<Real>& frame, int x, int y, std::size_t 
   return sum;
 }
 
-// Rubbish after `stop` was set, which ends any pixel soon. The mean of the pixel's samples, added
-// up in the order of the pattern; with an error to reach, of as many as that takes. Leaves in
-// `first`, unless that is null, what the first one hit.
+// Rubbish after `stop` was set, which ends any pixel soon. Adds a pixel's further samples to its
+// `sums`, in the order of the pattern: all, or with an error to reach as many as that takes. Leaves
+// in `first`, unless that is null, what the first one hit.
+template <typename Real>
+void SamplePixel(const FrameView<Real>& frame, int x, int y, PixelSums<Real>& sums,
+                 PixelScratch<Real>& scratch, RayCounts& tally, const std::atomic<bool>& stop,
+                 FirstHit<Real>* first = nullptr) {
+  while (sums.samples < frame.sample_x.size() &&
+         !(frame.converges() && sums.IsConverged(frame.error))) {
+    const std::uint32_t index = sums.samples;
+    sums.Add(RenderSample(frame, x, y, index, scratch, tally, stop, index == 0 ? first : nullptr));
+  }
+}
+
+// The mean of the pixel's samples.
 template <typename Real>
 Vec3<Real> RenderPixel(const FrameView<Real>& frame, int x, int y, PixelScratch<Real>& scratch,
                        RayCounts& tally, const std::atomic<bool>& stop,
                        FirstHit<Real>* first = nullptr) {
-  Vec3<Real> sum = {0, 0, 0}, squares = {0, 0, 0};
-  std::uint32_t count = 0;
-  while (count < frame.sample_x.size()) {
-    const Vec3<Real> colour =
-        RenderSample(frame, x, y, count, scratch, tally, stop, count == 0 ? first : nullptr);
-    ++count;
-    sum = sum + colour;
-    squares = squares + MultiplyColours(colour, colour);
-    if (frame.converges() && IsJudgedAt(count) && IsConverged(sum, squares, count, frame.error)) {
-      break;
-    }
-  }
-  return sum / static_cast<Real>(count);
+  PixelSums<Real> sums;
+  SamplePixel(frame, x, y, sums, scratch, tally, stop, first);
+  return sums.mean();
 }
 
 }  // namespace sheaf::scalar

@@ -60,6 +60,13 @@ struct LaneUse {
   }
 };
 
+// What a frame with RenderOptions::budget has reached.
+struct Reached {
+  int rounds = 0;             // that were whole; 0: the frame had no budget
+  double error = 0;           // as RenderOptions::error
+  std::uint64_t samples = 0;  // of all pixels
+};
+
 // What Render and RenderRows tell of a frame.
 struct RenderStats {
   RayCounts rays;
@@ -74,6 +81,7 @@ struct RenderStats {
   std::uint64_t buffer_bytes = 0;
   int threads = 0;     // that took part
   std::string target;  // what ran: "scalar" or a SIMD target's name
+  Reached reached;
   // A quad is two triangles.
   std::uint32_t primitives = 0, spheres = 0, triangles = 0, disks = 0;
 };
