@@ -1,5 +1,5 @@
 // Strays: rays whose neighbours go another way. They are set aside and sorted by direction, so that
-// the rays of their packets share an octant and a dominant axis.
+// those of a packet share an octant and a dominant axis, and those of a crowd's list an octant.
 #if defined(SHEAF_SIMD_STRAY_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_STRAY_RAYS_INL_H_
 #undef SHEAF_SIMD_STRAY_RAYS_INL_H_
@@ -19,12 +19,14 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 inline constexpr std::uint32_t kDirectionClasses = 8 * 4;  // one axis in four is none
 
 struct StrayRays {
-  static constexpr std::uint32_t kCapacity = 1024;
+  static constexpr std::uint32_t kCapacity = 4096;
   // Rays from so many positions at most, so that 16 bits hold an offset: this lies on the stack.
   static constexpr std::uint32_t kSpan = 1u << 16;
 
   std::uint32_t count = 0;
-  std::uint32_t first = 0;  // position in the batch that offsets count from
+  std::uint32_t first = 0;    // position in the batch that offsets count from
+  std::uint32_t vectors = 0;  // of neighbours that were set aside
+  std::uint32_t octants = 0;  // how many each vector's rays see, summed over the vectors
   std::uint16_t offset[kCapacity];
   std::uint8_t direction_class[kCapacity];
 };
@@ -55,11 +57,15 @@ HWY_INLINE Company PutAside(const RayView<Real>& rays, const RayIntervals<Real>&
   const auto one = hn::Set(di, Id{classes[0]});
   if (hn::AllTrue(d, hn::RebindMask(d, hn::Eq(of_lane, one)))) return Company::kPacket;
   if (strays.count == 0) strays.first = i;
+  std::uint32_t octants = 0;
   for (std::uint32_t lane = 0; lane < LaneCount(d); ++lane) {
     strays.offset[strays.count] = static_cast<std::uint16_t>(i + lane - strays.first);
     strays.direction_class[strays.count] = static_cast<std::uint8_t>(classes[lane]);
+    octants |= 1u << (classes[lane] >> 2);
     ++strays.count;
   }
+  ++strays.vectors;
+  strays.octants += static_cast<std::uint32_t>(std::popcount(octants));
   return Company::kStrays;
 }
 

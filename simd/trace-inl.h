@@ -1,4 +1,4 @@
-// Traces a batch of rays: as frusta, sheets, packets or single rays.
+// Traces a batch of rays: as frusta, sheets, packets, crowds or single rays.
 #if defined(SHEAF_SIMD_TRACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEAF_SIMD_TRACE_INL_H_
 #undef SHEAF_SIMD_TRACE_INL_H_
@@ -9,6 +9,7 @@
 #include "simd/query.h"
 #include "simd/stray_rays-inl.h"
 #include "simd/streams.h"
+#include "simd/trace_crowd-inl.h"
 #include "simd/trace_frustum-inl.h"
 #include "simd/trace_sheet-inl.h"
 #include "simd/tree.h"
@@ -53,21 +54,70 @@ HWY_INLINE void TraceAlone(const TreeView<Real>& tree, BeamStack<Real>& stack,
   TracePacket<kQuery>(tree, stack, packet, OpenLanes(packet) & ~packet.without_boxes, 0);
 }
 
-// Traces the strays, packet by packet.
+// Traces the strays at `sorted`, packet by packet.
 template <class Output, typename Real>
-HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& strays) {
+HWY_NOINLINE void TraceStrayPackets(const Batch<Output, Real>& batch, const std::uint32_t* sorted,
+                                    std::uint32_t count) {
   const std::uint32_t lanes = LaneCount(Lanes<Real>());
-  std::uint32_t sorted[StrayRays::kCapacity + kMaxLanes];
-  SortByDirection(strays, sorted);
   Packet<Real> packet;
-  for (std::uint32_t i = 0; i < strays.count; i += lanes) {
-    const std::uint32_t n = std::min(lanes, strays.count - i);
+  for (std::uint32_t i = 0; i < count; i += lanes) {
+    const std::uint32_t n = std::min(lanes, count - i);
     GatherPacket(batch.rays, batch.intervals, sorted + i, n, packet);
     PrepareLeafTerms(batch.tree, packet);
     TraceAlone<Output::kQuery>(batch.tree, batch.stack, packet);
     batch.output.Scatter(packet, sorted + i, n);
   }
-  strays.count = 0;
+}
+
+// Traces as many of the strays at `sorted` as there is room for as a crowd. Returns their number.
+template <class Output, typename Real>
+HWY_NOINLINE std::uint32_t TraceStrayCrowd(const Batch<Output, Real>& batch,
+                                           const std::uint32_t* sorted, std::uint32_t count,
+                                           Crowd<Real>& crowd) {
+  const std::uint32_t lanes = LaneCount(Lanes<Real>());
+  count = std::min(count, Crowd<Real>::kPackets * lanes);
+  for (std::uint32_t i = 0; i < count; i += lanes) {
+    Packet<Real>& packet = crowd.packets[i / lanes];
+    GatherPacket(batch.rays, batch.intervals, sorted + i, std::min(lanes, count - i), packet);
+    PrepareLeafTerms(batch.tree, packet);
+    PrepareBoxes(batch.tree, packet);
+    if (packet.without_boxes != 0) {
+      TraceOddRays<Output::kQuery>(batch.tree, packet, packet.without_boxes);
+    }
+  }
+  TraceCrowd<Output::kQuery>(batch.tree, crowd, count);
+  for (std::uint32_t i = 0; i < count; i += lanes) {
+    batch.output.Scatter(crowd.packets[i / lanes], sorted + i, std::min(lanes, count - i));
+  }
+  return count;
+}
+
+// Whether strays are faster as a crowd than packet by packet: where few of them go the same way for
+// long. In large trees they do not, and the less the more octants neighbours see. Measured
+// (docs/benchmarking.md).
+template <typename Real>
+HWY_INLINE bool AreCrowd(const TreeView<Real>& tree, const StrayRays& strays) {
+  constexpr std::uint32_t kLeastRays = 384;
+  constexpr std::uint32_t kLeastNodes = 256, kLeastNodesInOrder = 1u << 14;
+  const bool are_in_order = 2 * strays.octants < 5 * strays.vectors;
+  // One lane has nothing to fill.
+  return LaneCount(Lanes<Real>()) > 1 && strays.count >= kLeastRays &&
+         tree.node_count >= (are_in_order ? kLeastNodesInOrder : kLeastNodes);
+}
+
+template <class Output, typename Real>
+HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& strays) {
+  std::uint32_t sorted[StrayRays::kCapacity + kMaxLanes];
+  SortByDirection(strays, sorted);
+  Crowd<Real>* const crowd = AreCrowd(batch.tree, strays) ? CrowdOfThread<Real>() : nullptr;
+  if (crowd) {
+    for (std::uint32_t i = 0; i < strays.count;) {
+      i += TraceStrayCrowd(batch, sorted + i, strays.count - i, *crowd);
+    }
+  } else {
+    TraceStrayPackets(batch, sorted, strays.count);
+  }
+  strays.count = strays.vectors = strays.octants = 0;
 }
 
 // Traces the rays [begin, end) as a sheet and returns true, where they can be one.
