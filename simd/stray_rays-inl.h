@@ -7,6 +7,7 @@
 #define SHEAF_SIMD_STRAY_RAYS_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
 
 #include "simd/packet-inl.h"
@@ -19,16 +20,29 @@ namespace sheaf::SHEAF_SIMD::HWY_NAMESPACE {
 inline constexpr std::uint32_t kDirectionClasses = 8 * 4;  // one axis in four is none
 
 struct StrayRays {
-  static constexpr std::uint32_t kCapacity = 4096;
-  // Rays from so many positions at most, so that 16 bits hold an offset: this lies on the stack.
+  // This lies on the stack, which has room for few. A crowd has arrays for many.
+  static constexpr std::uint32_t kFew = 1024, kMany = 4096;
+  // Rays from so many positions at most, so that 16 bits hold an offset.
   static constexpr std::uint32_t kSpan = 1u << 16;
 
   std::uint32_t count = 0;
   std::uint32_t first = 0;    // position in the batch that offsets count from
   std::uint32_t vectors = 0;  // of neighbours that were set aside
   std::uint32_t octants = 0;  // how many each vector's rays see, summed over the vectors
-  std::uint16_t offset[kCapacity];
-  std::uint8_t direction_class[kCapacity];
+  std::uint32_t capacity = kFew;
+  std::uint16_t* offset = few_offsets;
+  std::uint8_t* direction_class = few_classes;
+  std::uint16_t few_offsets[kFew];
+  std::uint8_t few_classes[kFew];
+
+  // Goes on in arrays of kMany.
+  void MoveTo(std::uint16_t* offsets, std::uint8_t* classes) {
+    std::copy_n(offset, count, offsets);
+    std::copy_n(direction_class, count, classes);
+    offset = offsets;
+    direction_class = classes;
+    capacity = kMany;
+  }
 };
 
 // What became of a vector of rays.

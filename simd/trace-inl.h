@@ -107,7 +107,7 @@ HWY_INLINE bool AreCrowd(const TreeView<Real>& tree, const StrayRays& strays) {
 
 template <class Output, typename Real>
 HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& strays) {
-  std::uint32_t sorted[StrayRays::kCapacity + kMaxLanes];
+  std::uint32_t sorted[StrayRays::kMany + kMaxLanes];
   SortByDirection(strays, sorted);
   Crowd<Real>* const crowd = AreCrowd(batch.tree, strays) ? CrowdOfThread<Real>() : nullptr;
   if (crowd) {
@@ -118,6 +118,16 @@ HWY_NOINLINE void TraceStrays(const Batch<Output, Real>& batch, StrayRays& stray
     TraceStrayPackets(batch, sorted, strays.count);
   }
   strays.count = strays.vectors = strays.octants = 0;
+}
+
+// Whether there is room for more strays now, because they are a crowd.
+template <typename Real>
+HWY_NOINLINE bool MakeRoom(const TreeView<Real>& tree, StrayRays& strays) {
+  if (strays.capacity == StrayRays::kMany || !AreCrowd(tree, strays)) return false;
+  Crowd<Real>* const crowd = CrowdOfThread<Real>();
+  if (!crowd) return false;
+  strays.MoveTo(crowd->offsets, crowd->classes);
+  return true;
 }
 
 // Traces the rays [begin, end) as a sheet and returns true, where they can be one.
@@ -192,10 +202,9 @@ HWY_INLINE void TraceBatch(const Batch<Output, Real>& batch, Coherence coherence
     const bool has_company = end - begin > lanes / 4;
     if (may_be_frustum && has_company && TraceAsFrustum(batch, begin)) continue;
     if (may_be_sheet && has_company && TraceAsSheet(batch, begin, end)) continue;
-    if (strays.count + lanes * lanes > StrayRays::kCapacity ||
-        (strays.count > 0 && end - strays.first > StrayRays::kSpan)) {
-      TraceStrays(batch, strays);
-    }
+    const bool is_full = strays.count + lanes * lanes > strays.capacity;
+    const bool is_far = strays.count > 0 && end - strays.first > StrayRays::kSpan;
+    if (is_far || (is_full && !MakeRoom(tree, strays))) TraceStrays(batch, strays);
     for (std::uint32_t i = begin; i < end; i += lanes) {
       if (may_stray &&
           PutAside(batch.rays, batch.intervals, i, batch.count, strays) == Company::kStrays) {

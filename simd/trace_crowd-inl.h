@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kFewAtLeaf = 5;
 // from those of the first packet's first lane, in numbers: what gathers ask for.
 template <typename Real>
 struct Crowd {
-  static constexpr std::uint32_t kPackets = StrayRays::kCapacity / kPacketSize<Real>;
+  static constexpr std::uint32_t kPackets = StrayRays::kMany / kPacketSize<Real>;
   static constexpr std::uint32_t kStride = sizeof(Packet<Real>) / sizeof(Real);
   static_assert(sizeof(Packet<Real>) % sizeof(Real) == 0);
   static constexpr std::uint32_t kMostListed = 1024;  // rays that the root's list has at most
@@ -46,6 +46,9 @@ struct Crowd {
   std::uint32_t slot[kEntries + kMaxLanes];
   Real enter[kEntries + kMaxLanes];
   std::uint32_t open[kMostListed];  // slots of rays that a leaf is tested against
+  // Of strays that wait.
+  std::uint16_t offsets[StrayRays::kMany];
+  std::uint8_t classes[StrayRays::kMany];
 
   HWY_INLINE Packet<Real>& packet(std::uint32_t of_slot) { return packets[of_slot / kStride]; }
   static HWY_INLINE std::uint32_t lane(std::uint32_t of_slot) { return of_slot % kStride; }
