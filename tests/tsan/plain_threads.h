@@ -1,7 +1,8 @@
-// What the library uses of oneTBB, on plain std::thread: for the thread sanitizer, which does not see
-// how oneTBB's own library synchronises and calls races what are none. CMake puts it in the place of
-// <oneapi/tbb/...> (SHEAF_PLAIN_THREADS); nothing includes it by name. It orders threads no more than
-// oneTBB promises: items are handed out without an order of memory, so that races between them show.
+// What the library uses of oneTBB, on plain std::thread: for the thread sanitizer, which does not
+// see how oneTBB's own library synchronises and calls races what are none. CMake puts it in the
+// place of <oneapi/tbb/...> (SHEAF_PLAIN_THREADS); nothing includes it by name. It orders threads
+// no more than oneTBB promises: items are handed out without an order of memory, so that races
+// between them show.
 #ifndef SHEAF_TESTS_TSAN_PLAIN_THREADS_H_
 #define SHEAF_TESTS_TSAN_PLAIN_THREADS_H_
 
@@ -212,9 +213,8 @@ void parallel_for(const blocked_range<Value>& range, const Body& body, const Par
 template <typename Index, typename Body>
 void parallel_for(Index begin, Index end, const Body& body) {
   if (!(begin < end)) return;
-  plain::Spread(static_cast<std::size_t>(end - begin), [&](std::size_t, std::size_t item) {
-    body(begin + static_cast<Index>(item));
-  });
+  plain::Spread(static_cast<std::size_t>(end - begin),
+                [&](std::size_t, std::size_t item) { body(begin + static_cast<Index>(item)); });
 }
 
 template <typename Range, typename Value, typename Body, typename Join, typename... Partitioner>
