@@ -1,26 +1,14 @@
 // What the library uses of oneTBB, on the calling thread alone: for where there are no threads.
-// CMake puts it in the place of <oneapi/tbb/...> (src/core/serial_tbb.cmake); nothing includes it
+// CMake puts it in the place of <oneapi/tbb/...> (src/core/stand_in_tbb.cmake); nothing includes it
 // by name.
 #ifndef SHEAF_CORE_SERIAL_TBB_H_
 #define SHEAF_CORE_SERIAL_TBB_H_
 
 #include <cstddef>
-#include <utility>
+
+#include "src/core/stand_in_ranges.h"
 
 namespace oneapi::tbb {
-
-template <typename Value>
-class blocked_range {
- public:
-  blocked_range(Value begin, Value end, std::size_t = 1) : begin_(begin), end_(end) {}
-  Value begin() const { return begin_; }
-  Value end() const { return end_; }
-
- private:
-  Value begin_, end_;
-};
-
-struct simple_partitioner {};
 
 // The whole range at once, which is one of the ways in which oneTBB may cut it.
 template <typename Value, typename Body, typename... Partitioner>
