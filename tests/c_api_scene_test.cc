@@ -77,6 +77,64 @@ TEST_CASE("frames are those of C++") {
   }
 }
 
+TEST_CASE("lenses, integrators, errors and budgets are those of C++") {
+  std::string text = ReadText(SHEAF_SOURCE_DIR "/scenes/soft-light.json");
+  const std::size_t lens = text.find("\"lens\":");
+  REQUIRE(lens != std::string::npos);
+  text.replace(lens, text.find('}', lens) + 1 - lens,
+               R"("lens": {"aperture": 0.2, "focus": 3, "blades": 5, "rotation": 9})");
+  const Scene read = ParseSceneJson(text, "lens.json").value();
+  SceneOwner scene;
+  REQUIRE(sheaf_scene_parse(text.data(), text.size(), "lens.json", &scene.handle) == SHEAF_OK);
+  sheaf_settings settings = SHEAF_SETTINGS_INIT;
+  REQUIRE(sheaf_scene_get_settings(scene.handle, &settings) == SHEAF_OK);
+  CHECK(settings.integrator == SHEAF_DISTRIBUTED);
+  sheaf_camera view = SHEAF_CAMERA_INIT;
+  REQUIRE(sheaf_scene_get_camera(scene.handle, 0, &view) == SHEAF_OK);
+  CHECK(view.aperture == 0.2);
+  CHECK(view.focus == 3);
+  CHECK(view.blades == 5);
+  CHECK(view.rotation == 9);
+
+  sheaf_render_options options = SHEAF_RENDER_OPTIONS_INIT;
+  options.view = &view;
+  options.width = 40;
+  options.height = 30;
+  options.samples = 16;
+  RenderOptions same;
+  same.width = 40;
+  same.height = 30;
+  same.samples = 16;
+  sheaf_render_statistics statistics = SHEAF_RENDER_STATISTICS_INIT;
+  const auto is_same = [&] {
+    FilmOwner film;
+    REQUIRE(sheaf_render(scene.handle, &options, &statistics, &film.handle) == SHEAF_OK);
+    if (statistics.rounds > 0) same.error = statistics.error;
+    const Film expected = Render(read, read.cameras[0], same).value();
+    return std::memcmp(sheaf_film_rgb(film.handle), expected.rgb.data(),
+                       expected.rgb.size() * sizeof(float)) == 0;
+  };
+  for (const auto& [given, integrator] : {std::pair(SHEAF_WHITTED, Integrator::kWhitted),
+                                          std::pair(SHEAF_DISTRIBUTED, Integrator::kDistributed),
+                                          std::pair(SHEAF_PATH, Integrator::kPath)}) {
+    options.integrator = given;
+    same.integrator = integrator;
+    CHECK(is_same());
+  }
+  CHECK(statistics.rounds == 0);
+  options.integrator = SHEAF_SCENE_INTEGRATOR;
+  same.integrator.reset();
+  options.samples = same.samples = 256;
+  options.error = 0.02;
+  same.error = 0.02;
+  CHECK(is_same());
+  // However far it comes.
+  options.budget = 1e-3;
+  CHECK(is_same());
+  CHECK(statistics.rounds >= 1);
+  CHECK(statistics.samples >= 16 * 40 * 30);
+}
+
 TEST_CASE("frames that fail") {
   SceneOwner scene;
   FilmOwner film;
@@ -97,6 +155,10 @@ TEST_CASE("frames that fail") {
       [](auto& options) { options.layers = 1u << 20; },
       [](auto& options) { options.precision = static_cast<sheaf_precision>(3); },
       [](auto& options) { options.target = ""; },
+      [](auto& options) { std::memset(&options.integrator, 4, sizeof(options.integrator)); },
+      [](auto& options) { options.samples = 64, options.error = 2; },
+      [](auto& options) { options.samples = 8, options.error = 0.1; },
+      [](auto& options) { options.budget = -1; },
   };
   for (const auto& mistake : mistakes) {
     sheaf_render_options options = SHEAF_RENDER_OPTIONS_INIT;

@@ -222,6 +222,28 @@ TEST_CASE("targets and precisions change live, and two targets stand beside each
   CHECK(hand.viewer().picture()->rgb == BytesOf(Rendered(scene, scene.cameras[0], options)));
 }
 
+TEST_CASE("the integrator is the scene's, and changes live") {
+  const std::string path = SHEAF_SOURCE_DIR "/scenes/soft-light.json";
+  Hand hand(path);
+  const Result<ReadSceneResult> read = ReadScene(path);
+  REQUIRE(read.ok());
+  const Scene& scene = read.value().scene;
+  hand.Turn();
+  CHECK(hand.frame.lists->integrators ==
+        std::vector<std::string>{"whitted", "distributed", "path"});
+  for (const Integrator integrator :
+       {scene.settings.integrator, Integrator::kPath, Integrator::kWhitted}) {
+    if (integrator != scene.settings.integrator) {
+      hand.frame.controls->integrator = static_cast<int>(integrator);
+    }
+    REQUIRE(hand.UntilFinished());
+    RenderOptions options = WithSamples(4);
+    options.integrator = integrator;
+    const Film film = Rendered(scene, scene.cameras[0], options);
+    CHECK(hand.viewer().picture()->rgb == QuantizeTo8Bit(film, scene.settings.transfer));
+  }
+}
+
 TEST_CASE("cameras and views go by name") {
   Hand hand(kScene, 1);
   hand.Turn();

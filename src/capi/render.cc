@@ -52,6 +52,12 @@ Status GetCamera(const sheaf_scene* scene, std::size_t index, sheaf_camera* give
   }
   own.projection = static_cast<sheaf_projection>(camera.value().projection.index());
   own.lens = ParameterOf(camera.value().projection);
+  if (const std::optional<Lens>& lens = camera.value().lens) {
+    own.aperture = lens->aperture;
+    own.focus = lens->focus.value_or(0);
+    own.blades = lens->blades;
+    own.rotation = lens->rotation;
+  }
   return Put(own, "camera", given);
 }
 
@@ -69,10 +75,20 @@ Result<Camera> CameraOf(const sheaf_camera& given) {
   }
   camera.projection = *ProjectionNamed(kProjectionKinds[kind].name);
   SetParameter(camera.projection, view.lens);
+  if (view.aperture != 0) {
+    Lens lens{view.aperture, std::nullopt, view.blades, view.rotation};
+    if (view.focus != 0) lens.focus = view.focus;
+    camera.lens = lens;
+  }
   return camera;
 }
 
 // ---- Frames ----
+
+// 0 stands for the scene's.
+sheaf_integrator IntegratorOf(Integrator integrator) {
+  return static_cast<sheaf_integrator>(static_cast<int>(integrator) + 1);
+}
 
 Result<RenderOptions> OptionsOf(const sheaf_render_options& given) {
   RenderOptions options;
@@ -90,6 +106,14 @@ Result<RenderOptions> OptionsOf(const sheaf_render_options& given) {
     return UsageError("options: precision is none of sheaf_precision");
   }
   options.precision = kPrecisions[given.precision];
+  if (NumberIn(given.integrator) > std::size(kIntegrators)) {
+    return UsageError("options: integrator is none of sheaf_integrator");
+  }
+  if (given.integrator != SHEAF_SCENE_INTEGRATOR) {
+    options.integrator = kIntegrators[given.integrator - 1];
+  }
+  if (given.error != 0) options.error = given.error;
+  if (given.budget != 0) options.budget = given.budget;
   const Result<Layers> layers = LayersOf(given.layers);
   if (!layers) return layers.error();
   options.layers = layers.value();
@@ -111,6 +135,9 @@ Status PutStatistics(const RenderStats& stats, sheaf_render_statistics* given) {
   own.render_seconds = stats.wall_seconds;
   own.buffer_bytes = stats.buffer_bytes;
   own.threads = stats.threads;
+  own.rounds = stats.reached.rounds;
+  own.error = stats.reached.error;
+  own.samples = stats.reached.samples;
   return Put(own, "statistics", given);
 }
 
@@ -183,6 +210,8 @@ Status Write(const sheaf_film* film, const char* path, const sheaf_picture_optio
   return WritePicture(film->film, spec, path);
 }
 
+static_assert(SHEAF_WHITTED == static_cast<int>(Integrator::kWhitted) + 1);
+static_assert(SHEAF_PATH == static_cast<int>(Integrator::kPath) + 1);
 static_assert(SHEAF_DOUBLE == static_cast<int>(Precision::kDouble));
 static_assert(SHEAF_HEAT == 1 << static_cast<int>(Layer::kHeat));
 static_assert(SHEAF_FISHEYE == std::variant_size_v<Projection> - 1);
@@ -223,6 +252,7 @@ sheaf_status sheaf_scene_get_settings(const sheaf_scene* scene, sheaf_settings* 
     own.height = from.height;
     own.samples = from.samples;
     own.max_depth = from.max_depth;
+    own.integrator = IntegratorOf(from.integrator);
     return Put(own, "settings", settings);
   });
 }

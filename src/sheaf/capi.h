@@ -306,15 +306,24 @@ SHEAF_API void sheaf_scene_destroy(sheaf_scene* scene);
 SHEAF_API size_t sheaf_scene_warning_count(const sheaf_scene* scene);
 SHEAF_API const char* sheaf_scene_warning(const sheaf_scene* scene, size_t index);
 
+// How light is followed.
+typedef enum sheaf_integrator {
+  SHEAF_SCENE_INTEGRATOR = 0,  // as the scene says
+  SHEAF_WHITTED = 1,           // mirrors, glass and hard shadows alone
+  SHEAF_DISTRIBUTED = 2,       // lights with a size, rough surfaces and lenses are sampled
+  SHEAF_PATH = 3               // light that surfaces send to one another is followed too
+} sheaf_integrator;
+
 // The picture that a scene's file asks for.
 typedef struct sheaf_settings {
   size_t size;
   int32_t width, height;  // pixels
   int32_t samples;        // a pixel
   int32_t max_depth;
+  sheaf_integrator integrator;
 } sheaf_settings;
 #define SHEAF_SETTINGS_INIT \
-  { sizeof(sheaf_settings), 0, 0, 0, 0 }
+  { sizeof(sheaf_settings), 0, 0, 0, 0, SHEAF_SCENE_INTEGRATOR }
 SHEAF_API sheaf_status sheaf_scene_get_settings(const sheaf_scene* scene, sheaf_settings* settings);
 
 typedef enum sheaf_projection {
@@ -329,9 +338,17 @@ typedef struct sheaf_camera {
   double eye[3], look_at[3], up[3];
   sheaf_projection projection;
   double lens;
+  // Depth of field, of perspective and orthographic cameras.
+  double aperture;  // the lens' diameter; 0: all is sharp, and the members below are not read
+  double focus;     // how far ahead the plane that is sharp lies; 0: as far as look_at
+  double rotation;  // of the blades, degrees counter-clockwise
+  int32_t blades;   // corners of the aperture, 3 to 64; 0: round
 } sheaf_camera;
-#define SHEAF_CAMERA_INIT \
-  { sizeof(sheaf_camera), {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, SHEAF_PERSPECTIVE, 60.0 }
+#define SHEAF_CAMERA_INIT                                                                      \
+  {                                                                                            \
+    sizeof(sheaf_camera), {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, SHEAF_PERSPECTIVE, 60.0, 0.0, 0.0, \
+        0.0, 0                                                                                 \
+  }
 
 SHEAF_API size_t sheaf_scene_camera_count(const sheaf_scene* scene);
 // Lives as long as the scene; NULL from index sheaf_scene_camera_count() on.
@@ -377,11 +394,18 @@ typedef struct sheaf_render_options {
   uint32_t layers;           // a sum of sheaf_layer
   const char* target;        // NULL: the best; "scalar" or a target's name
   sheaf_progress* progress;  // NULL: none
+  sheaf_integrator integrator;
+  // Samples until a pixel's standard error is at most this, in (0, 1]: 16 at least, `samples`, no
+  // fewer, at most; 0: as the scene says, where that says `samples` too, else all samples.
+  double error;
+  // Seconds in which samples go where the error is largest, at most until `error` is reached; the
+  // picture is that of the error that the statistics tell. `samples` of 0 are then 65536. 0: none.
+  double budget;
 } sheaf_render_options;
 #define SHEAF_RENDER_OPTIONS_INIT                                                               \
   {                                                                                             \
     sizeof(sheaf_render_options), 0, NULL, 0, 0, 0, -1, {0, 0, 0, 0}, 0, SHEAF_STRICT, 0, NULL, \
-        NULL                                                                                    \
+        NULL, SHEAF_SCENE_INTEGRATOR, 0.0, 0.0                                                  \
   }
 
 typedef struct sheaf_render_statistics {
@@ -392,9 +416,12 @@ typedef struct sheaf_render_statistics {
   double render_seconds;
   uint64_t buffer_bytes;  // of all threads
   int32_t threads;        // that took part
+  int32_t rounds;         // of a frame with a budget: how many were whole; else 0, as are these:
+  double error;           // that all pixels have
+  uint64_t samples;       // of all pixels
 } sheaf_render_statistics;
 #define SHEAF_RENDER_STATISTICS_INIT \
-  { sizeof(sheaf_render_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(sheaf_render_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 // A picture in linear light.
 typedef struct sheaf_film sheaf_film;

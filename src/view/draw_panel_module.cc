@@ -31,6 +31,7 @@ void DrawControls(ViewControls& controls, const ViewLists& lists) {
   List("show", lists.shown, &controls.shown);
   List("target", lists.targets, &controls.target);
   List("beside", lists.besides, &controls.beside);
+  List("integrator", lists.integrators, &controls.integrator);
   List("precision", lists.precisions, &controls.precision);
   ImGui::SliderInt("samples", &controls.samples, 1, 1024, "%d", ImGuiSliderFlags_Logarithmic);
   Slider("adaptive", &controls.contrast, 0, 0.25, controls.contrast > 0 ? "%.3f" : "off");

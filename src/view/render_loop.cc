@@ -35,7 +35,7 @@ bool DiffersInDevelopmentAlone(const ViewRequest& a, const ViewRequest& b) {
            ParameterOf(one.projection) == ParameterOf(other.projection);
   };
   return a.scene == b.scene && is_same(a.camera, b.camera) && a.goal == b.goal &&
-         a.max_depth == b.max_depth && a.contrast == b.contrast &&
+         a.max_depth == b.max_depth && a.integrator == b.integrator && a.contrast == b.contrast &&
          a.min_throughput == b.min_throughput && a.precision == b.precision &&
          a.target == b.target && a.beside == b.beside && a.shown == b.shown &&
          a.threads == b.threads;

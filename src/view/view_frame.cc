@@ -32,6 +32,7 @@ RenderOptions OptionsOf(const ViewRequest& request, const FrameJob& job) {
   options.height = job.height;
   options.samples = job.samples;
   options.max_depth = request.max_depth;
+  options.integrator = request.integrator;
   options.contrast = request.contrast;
   options.min_throughput = request.min_throughput;
   options.precision = request.precision;

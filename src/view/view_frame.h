@@ -36,6 +36,7 @@ struct ViewRequest {
   Camera camera;
   FrameGoal goal;
   int max_depth = 5;
+  Integrator integrator = Integrator::kDistributed;
   std::optional<double> contrast;
   double min_throughput = 0;
   Precision precision = Precision::kStrict;

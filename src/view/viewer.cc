@@ -44,6 +44,9 @@ Viewer::Viewer(ViewerSetup setup, LoadedView first) : setup_(std::move(setup)) {
     lists_.targets.push_back(target.name());
     lists_.besides.push_back(target.name());
   }
+  for (const Integrator integrator : kIntegrators) {
+    lists_.integrators.push_back(IntegratorName(integrator));
+  }
   for (const Precision precision : kPrecisions) {
     lists_.precisions.push_back(PrecisionName(precision));
   }
@@ -72,6 +75,7 @@ ViewControls Viewer::DefaultsOf(const LoadedView& loaded) const {
   std::optional<double> contrast = setup_.contrast;
   if (!setup_.samples && !contrast) contrast = is_plain ? kUsualContrast : settings.contrast;
   defaults.contrast = contrast.value_or(0);
+  defaults.integrator = static_cast<int>(settings.integrator);
   defaults.max_depth = setup_.max_depth.value_or(settings.max_depth);
   defaults.ev = loaded.development.ev;
   defaults.tone = loaded.development.tone == Tone::kFilmic ? 1 : 0;
@@ -88,6 +92,7 @@ void Viewer::Accept(LoadedView loaded) {
     if (is_first || controls_.*member == old.*member) controls_.*member = defaults_.*member;
   };
   follow(&ViewControls::samples);
+  follow(&ViewControls::integrator);
   follow(&ViewControls::max_depth);
   follow(&ViewControls::contrast);
   follow(&ViewControls::ev);
@@ -313,6 +318,7 @@ ViewRequest Viewer::RequestOf(int width, int height) const {
                         request.shown != Shown::kLanes;
   request.goal = {width, height, is_layer ? 1 : controls_.samples};
   request.max_depth = controls_.max_depth;
+  request.integrator = static_cast<Integrator>(controls_.integrator);
   if (controls_.contrast > 0) request.contrast = controls_.contrast;
   request.min_throughput = setup_.min_throughput;
   request.precision = static_cast<Precision>(controls_.precision);

@@ -33,6 +33,7 @@ struct WindowInput {
 // What the panel shows as sliders and lists, and changes.
 struct ViewControls {
   int camera = 0, view = 0, shown = 0, precision = 0, target = 0;
+  int integrator = 0;
   int beside = 0;  // 0: nothing, else one more than a target
   int samples = 1, max_depth = 5;
   double contrast = 0;  // 0: not adaptive
@@ -43,7 +44,7 @@ struct ViewControls {
 
 // What the lists hold.
 struct ViewLists {
-  std::vector<std::string> cameras, views, shown, precisions, targets, besides, tones;
+  std::vector<std::string> cameras, views, shown, integrators, precisions, targets, besides, tones;
 };
 
 // What a turn leaves for the window. Pointers stay good until the next turn.
