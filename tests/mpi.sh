@@ -108,11 +108,14 @@ echo "kills"
 journal=.slow.png.sheaf-journal
 halted=
 await_journal() {
-  for _ in $(seq 2400); do
+  for i in $(seq 2400); do
     [[ -s $journal && $(stat -c %s $journal) -gt $1 ]] && return
     kill -0 "$job" 2>/dev/null || break
-    # Again and again: mpirun hands on what wakes it.
-    [[ -z $halted ]] || kill -STOP "$halted"
+    # Again and again: mpirun hands on what wakes it, and halted amid a message it would hold up rank 0 too.
+    if [[ -n $halted ]]; then
+      [[ $((i % 60)) -ne 59 ]] || { kill -CONT "$halted" && sleep 0.2; }
+      kill -STOP "$halted"
+    fi
     sleep 0.05
   done
   fail "no rows on disk"
