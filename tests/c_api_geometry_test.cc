@@ -52,12 +52,7 @@ struct Both {
     REQUIRE(sheaf_add_triangles_d(input.handle, &mesh, nullptr) == SHEAF_OK);
     REQUIRE(sheaf_geometry_build_d(input.handle, nullptr, &in_c.handle) == SHEAF_OK);
     for (int i = 0; i < 400; ++i) lists.Add(RandomRay<double>(random, 240));
-    const RayArraysD view = lists.view();
-    rays.count = lists.size();
-    rays.origin_x = view.origin_x, rays.origin_y = view.origin_y, rays.origin_z = view.origin_z;
-    rays.direction_x = view.direction_x, rays.direction_y = view.direction_y;
-    rays.direction_z = view.direction_z;
-    rays.source = view.source;
+    PointAt(lists.view(), lists.size(), rays);
     options.t_min = lists.t_min.data();
     options.t_max = lists.t_max.data();
   }

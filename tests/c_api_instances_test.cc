@@ -71,12 +71,7 @@ struct Both {
       lists.Add(ray);
       source_instance.push_back(i % 3 == 0 ? i % 7 : SHEAF_NO_INSTANCE);
     }
-    const RayArrays view = lists.view();
-    rays.count = lists.size();
-    rays.origin_x = view.origin_x, rays.origin_y = view.origin_y, rays.origin_z = view.origin_z;
-    rays.direction_x = view.direction_x, rays.direction_y = view.direction_y;
-    rays.direction_z = view.direction_z;
-    rays.source = view.source;
+    PointAt(lists.view(), lists.size(), rays);
   }
 };
 

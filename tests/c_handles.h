@@ -2,6 +2,7 @@
 #ifndef SHEAF_TESTS_C_HANDLES_H_
 #define SHEAF_TESTS_C_HANDLES_H_
 
+#include <cstddef>
 #include <string>
 
 #include "sheaf/capi.h"
@@ -22,6 +23,16 @@ using GeometryOwner = Owner<sheaf_geometry, sheaf_geometry_destroy>;
 using SceneOwner = Owner<sheaf_scene, sheaf_scene_destroy>;
 using FilmOwner = Owner<sheaf_film, sheaf_film_destroy>;
 using ProgressOwner = Owner<sheaf_progress, sheaf_progress_destroy>;
+
+// Rays of C, a sheaf_rays or sheaf_rays_d, that lie where those of C++ do.
+template <typename InC, typename Arrays>
+void PointAt(const Arrays& from, std::size_t count, InC& rays) {
+  rays.count = count;
+  rays.origin_x = from.origin_x, rays.origin_y = from.origin_y, rays.origin_z = from.origin_z;
+  rays.direction_x = from.direction_x, rays.direction_y = from.direction_y;
+  rays.direction_z = from.direction_z;
+  rays.source = from.source;
+}
 
 inline bool Says(const std::string& part) { return Contains(sheaf_error_message(), part); }
 
