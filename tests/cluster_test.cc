@@ -267,7 +267,8 @@ Scene CrystalBall() {
 // Whether colours and layers have the same bits.
 bool IsSame(const Film& a, const Film& b) {
   const auto same = [](const Film::Floats& x, const Film::Floats& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
+    if (x.size() != y.size()) return false;
+    return x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
   };
   bool is_same = same(a.rgb, b.rgb);
   for (int i = 0; i < kLayerCount; ++i) is_same = is_same && same(a.layers[i], b.layers[i]);

@@ -57,6 +57,7 @@ class WireReader {
   void GetFloats(Floats* floats) {
     const std::string_view text = GetText();
     floats->resize(text.size() / sizeof(float));
+    if (floats->empty()) return;  // neither has an address then
     std::memcpy(floats->data(), text.data(), floats->size() * sizeof(float));
   }
 
