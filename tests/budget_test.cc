@@ -17,12 +17,6 @@
 namespace sheaf {
 namespace {
 
-Scene SoftScene() {
-  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/soft-light.json");
-  REQUIRE(scene.ok());
-  return std::move(scene).value();
-}
-
 RenderOptions SmallFrame() {
   RenderOptions options;
   options.width = 41;

@@ -21,7 +21,7 @@ for entry in json.load(open(sys.argv[1])):
     flags = ["-fsyntax-only", "-w", "-DHWY_DISABLED_TARGETS=HWY_AVX3_DL+HWY_AVX3+HWY_AVX2+HWY_SSE4"]
     print("cd", shlex.quote(entry["directory"]), "&& clang++", shlex.join(keep + flags + [entry["file"]]))
 '
-python3 -c "$list" "${1:-build/dev}/compile_commands.json" >"${TMPDIR:-/tmp}/clang-syntax.$$"
-trap 'rm -f "${TMPDIR:-/tmp}/clang-syntax.$$"' EXIT
-tr '\n' '\0' <"${TMPDIR:-/tmp}/clang-syntax.$$" | xargs -0 -n 1 -P "$(nproc)" sh -c
-echo "clang read $(wc -l <"${TMPDIR:-/tmp}/clang-syntax.$$") files"
+mapfile -t commands < <(python3 -c "$list" "${1:-build/dev}/compile_commands.json")
+[[ ${#commands[@]} -gt 0 ]] || { echo "no files in ${1:-build/dev}" >&2; exit 1; }
+printf '%s\0' "${commands[@]}" | xargs -0 -n 1 -P "$(nproc)" sh -c
+echo "clang read ${#commands[@]} files"

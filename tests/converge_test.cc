@@ -12,12 +12,6 @@
 namespace sheaf {
 namespace {
 
-Scene SoftScene() {
-  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/soft-light.json");
-  REQUIRE(scene.ok());
-  return std::move(scene).value();
-}
-
 TEST_CASE("frames with an error to reach have the same bits on every target, tile and crop") {
   const Scene scene = SoftScene();
   RenderOptions options;

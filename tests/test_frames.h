@@ -14,11 +14,14 @@
 
 namespace sheaf {
 
-inline Scene CrystalBall() {
-  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/crystal-ball.json");
+// Of the project's own, in scenes/.
+inline Scene SceneNamed(const std::string& name) {
+  Result<Scene> scene = ReadSceneJson(SHEAF_SOURCE_DIR "/scenes/" + name + ".json");
   REQUIRE(scene.ok());
   return std::move(scene).value();
 }
+inline Scene CrystalBall() { return SceneNamed("crystal-ball"); }
+inline Scene SoftScene() { return SceneNamed("soft-light"); }
 
 // A scene with everything at once: several mirrors and glasses, so that several materials spawn
 // rays at one depth, triangles seen from both sides, every kind of light, overlapping and

@@ -142,9 +142,7 @@ Status GetStatistics(const Handle* geometry, sheaf_geometry_statistics* statisti
   own.leaves = from.leaves;
   own.depth = from.depth;
   own.bytes = from.bytes;
-  const auto lower = geometry->geometry.lower(), upper = geometry->geometry.upper();
-  std::copy(lower.begin(), lower.end(), own.lower);
-  std::copy(upper.begin(), upper.end(), own.upper);
+  StoreBox(geometry->geometry, &own);
   return Put(own, "statistics", statistics);
 }
 

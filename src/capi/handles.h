@@ -152,6 +152,14 @@ Status Put(const Struct& own, const char* name, Struct* given) {
   return Done{};
 }
 
+// The box around what a C++ object holds, in a structure of statistics.
+template <typename From, typename Statistics>
+void StoreBox(const From& from, Statistics* statistics) {
+  const auto lower = from.lower(), upper = from.upper();
+  std::copy(lower.begin(), lower.end(), statistics->lower);
+  std::copy(upper.begin(), upper.end(), statistics->upper);
+}
+
 // The target of this name; NULL: the best.
 Result<Target> TargetOf(const char* name);
 

@@ -52,9 +52,7 @@ Status GetStatistics(const sheaf_instances* instances, sheaf_instance_statistics
   own.nodes = from.nodes;
   own.depth = from.depth;
   own.bytes = from.bytes;
-  const auto lower = instances->instances.lower(), upper = instances->instances.upper();
-  std::copy(lower.begin(), lower.end(), own.lower);
-  std::copy(upper.begin(), upper.end(), own.upper);
+  StoreBox(instances->instances, &own);
   return Put(own, "statistics", statistics);
 }
 

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "src/core/ceil_divide.h"
+
 namespace sheaf {
-namespace {
-
-int CeilDivide(int a, int b) { return (a + b - 1) / b; }
-
-}  // namespace
 
 AreaPlan::AreaPlan(const PixelRect& pixels, int tile_size, int ranks, std::int64_t most_pixels,
                    int share)

@@ -49,7 +49,7 @@ void SampleTextures(const FrameView<Real>& frame, const Kernels<Real>& kernels, 
     if (texture == kNoTexture) return;
     kernels.sample_texture(frame.textures[texture], surfaces, bin.batch.count, channels);
   };
-  if (finish.metallic_roughness == kNoTexture) {
+  if (finish.is_glossy && finish.metallic_roughness == kNoTexture) {
     std::fill_n(texels.roughness, bin.batch.count, Real(1));
     std::fill_n(texels.metallic, bin.batch.count, Real(1));
   }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
+#include "src/core/ceil_divide.h"
 #include "src/core/parallel.h"
 #include "src/render/tile_cost.h"
 
@@ -16,8 +17,6 @@ using Clock = std::chrono::steady_clock;
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-int CeilDivide(int a, int b) { return (a + b - 1) / b; }
 
 constexpr int kBandBytes = 512 << 10;
 constexpr int kBandTilesPerThread = 32;

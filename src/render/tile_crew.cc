@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "src/core/ceil_divide.h"
 #include "src/core/parallel.h"
 
 namespace sheaf {
-namespace {
-
-std::uint64_t CeilDivide(int a, int b) { return static_cast<std::uint64_t>((a + b - 1) / b); }
-
-}  // namespace
 
 std::int64_t TileCount(const PixelRect& area, int size) {
-  return static_cast<std::int64_t>(CeilDivide(area.width(), size) *
-                                   CeilDivide(area.height(), size));
+  return std::int64_t{CeilDivide(area.width(), size)} * CeilDivide(area.height(), size);
 }
 
 TileCrew::TileCrew(int threads, std::int64_t tiles, int tile_size, const MakeWorker& make_worker)
@@ -25,9 +20,9 @@ TileCrew::TileCrew(int threads, std::int64_t tiles, int tile_size, const MakeWor
 void TileCrew::ForEachTile(const PixelRect& area, const std::atomic<bool>& stop,
                            const Work& work) const {
   const int size = tile_size_;
-  const std::uint64_t columns = CeilDivide(area.width(), size);
-  const std::uint64_t rows = CeilDivide(area.height(), size);
-  ParallelFor(threads(), columns * rows, [&](int chosen, std::uint64_t item) {
+  const auto columns = static_cast<std::uint64_t>(CeilDivide(area.width(), size));
+  const auto tiles = static_cast<std::uint64_t>(TileCount(area, size));
+  ParallelFor(threads(), tiles, [&](int chosen, std::uint64_t item) {
     if (stop.load(std::memory_order_relaxed)) return;
     PixelRect tile;
     tile.x0 = area.x0 + static_cast<int>(item % columns) * size;
